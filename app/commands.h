@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The sub-commands. Each add_* declares one with its options; CLI11 runs it when it was called.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace nearfield::app {
+
+void add_demo(CLI::App& app);
+void add_simulate(CLI::App& app);
+void add_convert(CLI::App& app);
+void add_pack(CLI::App& app);
+void add_info(CLI::App& app);
+void add_probe(CLI::App& app);
+void add_render(CLI::App& app);
+
+}  // namespace nearfield::app

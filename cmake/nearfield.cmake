@@ -1,0 +1,40 @@
+# The project's CMake functions. A folder's CMakeLists.txt is a list of files and links, nothing else.
+
+# Every target's compiler settings. x86-64-v3 (AVX2, FMA; any PC since 2015) is the baseline; Highway dispatches
+# above it at run time. Contraction is off so that a formula gives the same bits wherever it is inlined.
+add_library(nearfield_settings INTERFACE)
+target_compile_features(nearfield_settings INTERFACE cxx_std_20)
+target_include_directories(nearfield_settings INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(nearfield_settings INTERFACE
+    -march=x86-64-v3 -ffp-contract=off -fopenmp-simd -Wall -Wextra -Wshadow -Wconversion -Wpedantic
+    $<$<BOOL:${NEARFIELD_WERROR}>:-Werror>
+    $<$<BOOL:${NEARFIELD_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                    -fno-omit-frame-pointer>)
+target_link_options(nearfield_settings INTERFACE
+    $<$<BOOL:${NEARFIELD_SANITIZE}>:-fsanitize=address,undefined>)
+
+# nearfield_library(NAME fit SOURCES a.h a.cpp PUBLIC targets... PRIVATE targets...)
+function(nearfield_library)
+    cmake_parse_arguments(ARG "" "NAME" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    set(target nearfield_${ARG_NAME})
+    add_library(${target} STATIC ${ARG_SOURCES})
+    add_library(nearfield::${ARG_NAME} ALIAS ${target})
+    target_link_libraries(${target} PUBLIC nearfield_settings ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+endfunction()
+
+# nearfield_test(NAME files_test SOURCES a_test.cpp LIBS targets... LABELS unit)
+# One executable a folder, one CTest test a case. Sample data and shared inputs are found by environment-free,
+# compiled-in source paths; what a test writes goes to its working directory.
+function(nearfield_test)
+    cmake_parse_arguments(ARG "" "NAME" "SOURCES;LIBS;LABELS" ${ARGN})
+    add_executable(${ARG_NAME} ${ARG_SOURCES})
+    target_link_libraries(${ARG_NAME} PRIVATE nearfield_settings ${ARG_LIBS} GTest::gtest GTest::gtest_main)
+    target_compile_definitions(${ARG_NAME} PRIVATE
+        NEARFIELD_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    include(GoogleTest)
+    file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/test_output/${ARG_NAME})
+    gtest_discover_tests(${ARG_NAME}
+        WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/test_output/${ARG_NAME}
+        DISCOVERY_MODE PRE_TEST
+        PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1200)
+endfunction()

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace nearfield {
+
+/// A file that appears under its name whole or not at all: written beside it under a temporary
+/// name, renamed by commit(), removed when destroyed before. Every writer goes through it.
+///
+/// Throws Error with path and the system's reason (no such folder, disk full...).
+class AtomicFile {
+  public:
+    explicit AtomicFile(std::string path);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Writes all of it at an offset.
+    void write_at(const void* bytes, std::size_t size, std::uint64_t offset);
+
+    /// Gives the file its name. Errors that the system kept back (quota, network) show here.
+    void commit();
+
+  private:
+    std::string path_, temporary_path_;
+    int descriptor_ = -1;
+};
+
+/// Writes a text or a buffer as one file, whole or not at all.
+void write_file(std::string_view content, const std::string& path);
+
+}  // namespace nearfield

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "formats/files/luminaire.h"
+
+namespace nearfield::model {
+
+/// Builds a slab's tables from its coefficients, in double, stored as documented in SlabTables.
+/// Cost    O(texels), bound by memory; parallel over images (TBB).
+SlabTables build_tables(const Slab& slab);
+
+/// The light field, checked, with tables for every slab unless `lean`.
+Luminaire pack(LightField lightfield, bool lean);
+
+/// How many stored tables' values differ from those that C_m gives, by more than float rounding.
+struct TableCheck {
+    std::size_t values = 0, different = 0;
+    double worst_relative = 0;
+};
+TableCheck verify_tables(const Luminaire& luminaire);
+
+}  // namespace nearfield::model

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/rays/to_lightfield.h"
+
+#include "formats/files/error.h"
+#include "formats/model/profile.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace nearfield::rays {
+namespace {
+
+constexpr std::array kAxisNames = {"+z", "+x", "-x", "+y", "-y", "-z"};
+// U this many sides of S's rectangle behind S: farther, a pitch means the same direction all over
+// S, which is what keeps the grid small; nearer, U stays within the lamp.
+constexpr double kDepthInSides = 2.0;
+// U stays behind the first ray start by this part of the planes' distance.
+constexpr double kBehindStarts = 0.05;
+// Flux that a rectangle may leave out beyond each edge. One slab has no end of slanting rays: cut
+// more.
+constexpr double kTrimOneSlab = 2e-3;
+constexpr double kTrimBox = 1e-4;
+// A slab is worth having if without it more than this part of the flux were lost.
+constexpr double kWorthASlab = 0.01;
+// Cross-validation on more rays than this costs time and changes little.
+constexpr std::size_t kMostRaysToChoose = 400000;
+// Coefficients a slab may have at most (1 GiB as floats).
+constexpr double kMostCoefficients = 268435456.0;
+
+const std::vector<glm::vec3> kNoColors;
+
+// Which rays go to which slab.
+struct Members {
+    std::array<std::vector<std::uint32_t>, 6> of_slab;
+    double dropped_flux = 0;
+    std::size_t dropped_rays = 0;
+};
+
+// Slanting more than this, a ray reaches planes a metre apart a kilometre aside.
+constexpr float kLeastCosine = 1e-3F;
+
+Members share_out_directions(const RaySet& set, int slab_count) {
+    Members members;
+    for (std::size_t r = 0; r < set.rays.size(); ++r) {
+        const glm::vec3 direction = set.rays[r].direction;
+        const std::optional<int> slab = slab_of(direction, slab_count);
+        if (slab && !(slab_count == 1 && direction.z < kLeastCosine)) {
+            members.of_slab[static_cast<std::size_t>(*slab)].push_back(
+                static_cast<std::uint32_t>(r));
+        } else {
+            members.dropped_flux += set.rays[r].flux;
+            ++members.dropped_rays;
+        }
+    }
+    return members;
+}
+
+int choose_slab_count(const RaySet& set) {
+    std::array<double, 6> of_axis{};
+    for (const Ray& ray : set.rays)
+        of_axis[static_cast<std::size_t>(slab_of(ray.direction, 6).value())] += ray.flux;
+    double total = 0.0;
+    for (const double f : of_axis)
+        total += f;
+    if (of_axis[5] > kWorthASlab * total)
+        return 6;
+    return total - of_axis[0] > kWorthASlab * total ? 5 : 1;
+}
+
+// Planes of one slab: as asked for, or S at the waist and U behind everything.
+Planes choose_planes(const RaySet& set,
+                     const std::vector<std::uint32_t>& members,
+                     int slab,
+                     const ConvertOptions& options,
+                     double trim) {
+    Planes planes;
+    planes.file_from_slab = file_from_slab(slab);
+    const Waist waist = find_waist(set, members, planes.file_from_slab);
+    const bool is_first = slab == 0;
+    planes.s_m = is_first && options.s_plane_mm ? *options.s_plane_mm * 1e-3 : waist.s_m;
+    planes.u_m = planes.s_m;
+    const Rectangle s = bound_s(propagate(set, members, planes), trim);
+    const glm::dvec2 side = s.max_m - s.min_m;
+    const double behind = std::max(0.0, planes.s_m - waist.first_start_m) * (1.0 + kBehindStarts);
+    planes.u_m = is_first && options.u_plane_mm
+                     ? *options.u_plane_mm * 1e-3
+                     : planes.s_m - std::max(kDepthInSides * std::max(side.x, side.y), behind);
+    if (!(planes.u_m < planes.s_m) || !std::isfinite(planes.s_m - planes.u_m))
+        throw Error{"planes out of order",
+                    fmt::format("slab {}", kAxisNames[static_cast<std::size_t>(slab)]),
+                    "U behind S, at finite distances",
+                    fmt::format("U at {} mm, S at {} mm", planes.u_m * 1e3, planes.s_m * 1e3)};
+    return planes;
+}
+
+// Removes the crossings outside the rectangle; returns their flux.
+template <typename Coordinate>
+double drop_outside(std::vector<Crossing>& crossings,
+                    const Rectangle& rectangle,
+                    const Coordinate& coordinate) {
+    double dropped = 0.0;
+    const auto outside = [&](const Crossing& c) {
+        const glm::dvec2 x(coordinate(c));
+        const bool inside = x.x >= rectangle.min_m.x && x.x < rectangle.max_m.x &&
+                            x.y >= rectangle.min_m.y && x.y < rectangle.max_m.y;
+        dropped += inside ? 0.0 : static_cast<double>(c.flux);
+        return !inside;
+    };
+    crossings.erase(std::remove_if(crossings.begin(), crossings.end(), outside), crossings.end());
+    return dropped;
+}
+
+// Rays whose fold comes first, as many as cross-validation needs.
+std::vector<Crossing> thin(const std::vector<Crossing>& crossings, std::uint64_t seed) {
+    if (crossings.size() <= kMostRaysToChoose)
+        return crossings;
+    std::vector<Crossing> some;
+    const std::size_t stride = crossings.size() / kMostRaysToChoose + 1;
+    for (std::size_t r = seed % stride; r < crossings.size(); r += stride)
+        some.push_back(crossings[r]);
+    return some;
+}
+
+Slab make_slab(const Planes& planes,
+               const Planes& first,
+               const Aperture& aperture,
+               const TexelGrid& texels) {
+    Slab slab;
+    slab.luminaire_from_slab.rotation = planes.file_from_slab;
+    slab.luminaire_from_slab.translation_m =
+        planes.file_from_slab[2] * planes.s_m - glm::dvec3(0.0, 0.0, first.s_m);
+    slab.delta_m = planes.s_m - planes.u_m;
+    slab.grid = aperture.grid;
+    slab.pitch_m = aperture.pitch_m;
+    slab.u_center_m = aperture.center_m;
+    slab.texels = texels.texels;
+    slab.s_min_m = texels.rectangle.min_m;
+    slab.s_max_m = texels.rectangle.max_m;
+    slab.profile = aperture.profile;
+    slab.weighting = Weighting::Irradiance;
+    return slab;
+}
+
+// The parts of a texel's flux that the basis functions carry: [channel][m]; the first channel sums
+// to one.
+std::vector<double> shares_of_texel(const std::vector<BlockShares>& fits, glm::dvec2 s_m) {
+    // A texel that the kernel lights beyond all lit blocks takes the shares of a coarser level, at
+    // last of all of S.
+    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) {
+        const BlockWeights at = weights_at(fit->blocks, fit->s, s_m);
+        double flux = 0.0;
+        for (int k = 0; k < 4; ++k)
+            flux += at.weight[k] * fit->block_flux[at.block[k]];
+        if (!(flux > 0.0))
+            continue;
+        std::vector<double> shares(static_cast<std::size_t>(fit->channels * fit->images));
+        for (int k = 0; k < 4; ++k)
+            for (std::size_t i = 0; i < shares.size(); ++i)
+                shares[i] += at.weight[k] / flux * fit->flux[fit->offset(at.block[k], 0) + i];
+        return shares;
+    }
+    return {};
+}
+
+// What a channel of the slab takes of the shares: a channel of them and a factor.
+struct ChannelSource {
+    int share_channel = 0;
+    double factor = 1.0;
+};
+
+std::vector<ChannelSource> channel_sources(const std::vector<glm::vec3>& colors) {
+    if (colors.empty())
+        return {{}};
+    if (colors.size() == 1)
+        return {{0, colors[0].r}, {0, colors[0].g}, {0, colors[0].b}};
+    return {{1, 1.0}, {2, 1.0}, {3, 1.0}};
+}
+
+// c_m(texel) = flux of the texel * share of m / (texel area * integral of Phi).
+// sigma_m^2 = variance of the texel's flux * share of m / (...)^2: adds up to the texel's variance
+// over m.
+void fill(Slab& slab,
+          const TexelGrid& grid,
+          const TexelFlux& flux,
+          const std::vector<BlockShares>& fits,
+          const std::vector<glm::vec3>& colors) {
+    const std::vector<ChannelSource> sources = channel_sources(colors);
+    slab.channels = static_cast<int>(sources.size());
+    const auto images = static_cast<std::size_t>(slab.image_count());
+    slab.coeffs.assign(sources.size() * images * slab.texel_count(), 0.0F);
+    slab.sigma.assign(slab.coeffs.size(), 0.0F);
+    const double unit =
+        grid.size_m().x * grid.size_m().y *
+        Aperture{slab.profile, slab.grid, slab.pitch_m, slab.u_center_m}.integral_m2();
+    tbb::parallel_for(std::size_t{0}, slab.texel_count(), [&](std::size_t t) {
+        if (!(flux.flux[t] > 0.0))
+            return;
+        const auto width = static_cast<std::size_t>(slab.texels.x);
+        const glm::dvec2 texel(static_cast<double>(t % width), static_cast<double>(t / width));
+        const std::vector<double> shares =
+            shares_of_texel(fits, slab.s_min_m + (texel + 0.5) * grid.size_m());
+        for (std::size_t m = 0; m < images; ++m) {
+            // Channels' errors are one error, the rays', shared out like the color: Y's sigma is
+            // the channels' weighted sum.
+            double y = 0.0;
+            std::array<double, 3> c{};
+            for (std::size_t k = 0; k < sources.size(); ++k) {
+                c[k] = sources[k].factor *
+                       shares[static_cast<std::size_t>(sources[k].share_channel) * images + m];
+                y += (sources.size() == 1 ? 1.0 : kLuminanceRgb[k]) * c[k];
+            }
+            if (!(y > 0.0))
+                continue;
+            const double sigma = std::sqrt(flux.variance_as_independent[t] * y) / unit;
+            for (std::size_t k = 0; k < sources.size(); ++k) {
+                const std::size_t i =
+                    slab.image_offset(static_cast<int>(k), static_cast<int>(m)) + t;
+                slab.coeffs[i] = static_cast<float>(flux.flux[t] * c[k] / unit);
+                slab.sigma[i] = static_cast<float>(sigma * c[k] / y);
+            }
+        }
+    });
+}
+
+void describe(SlabReport& report, const Planes& planes, const Slab& slab, const TexelFlux& flux) {
+    report.u_plane_mm = planes.u_m * 1e3;
+    report.s_plane_mm = planes.s_m * 1e3;
+    report.texel_mm = std::max(slab.texel_m().x, slab.texel_m().y) * 1e3;
+    report.pitch_deg = std::atan(std::max(slab.pitch_m.x, slab.pitch_m.y) / slab.delta_m) * 180.0 /
+                       std::numbers::pi;
+    double sigma = 0.0;
+    for (std::size_t t = 0; t < flux.flux.size(); ++t) {
+        report.flux += flux.flux[t];
+        sigma += std::sqrt(flux.variance[t]);
+    }
+    report.sigma_texel_rel = report.flux > 0.0 ? sigma / report.flux : 0.0;
+}
+
+struct Part {
+    Slab slab;
+    SlabReport report;
+    Planes planes;
+};
+
+// One slab from its rays. Adds what is dropped to `total`.
+Part convert_slab(const RaySet& set,
+                  const std::vector<std::uint32_t>& members,
+                  int index,
+                  const Planes* first,
+                  const ConvertOptions& options,
+                  double trim,
+                  ConvertReport& total) {
+    Part part;
+    const char* axis = kAxisNames[static_cast<std::size_t>(index)];
+    part.report.axis = axis;
+    part.planes = choose_planes(set, members, index, options, trim);
+    std::vector<Crossing> crossings = propagate(set, members, part.planes);
+    const Rectangle s = bound_s(crossings, trim);
+    total.dropped_s += drop_outside(crossings, s, [](const Crossing& c) { return c.s_m; });
+    const Rectangle u = bound_u(crossings, trim);
+    total.dropped_u += drop_outside(crossings, u, [](const Crossing& c) { return c.u_m; });
+    total.rays_dropped += members.size() - crossings.size();
+    if (crossings.empty())
+        throw Error{"no ray crosses a slab's rectangles", fmt::format("slab {}", axis)};
+    part.report.rays = crossings.size();
+
+    const Profile profile = model::make_profile(options.basis);
+    const std::vector<Crossing> some = thin(crossings, options.seed);
+    part.report.texels = choose_texels(some, s, options.texels, options.seed);
+    part.report.directions = choose_directions(some, s, u, profile, options.grid, options.seed);
+    const TexelGrid grid{s, part.report.texels.texels};
+    const Aperture aperture = cover(profile, u, part.report.directions.grid);
+    if (static_cast<double>(grid.count()) * aperture.image_count() > kMostCoefficients)
+        throw Error{"too many coefficients", fmt::format("slab {}", axis),
+                    "grid * texels below 268 million"};
+
+    const TexelFlux flux = smooth_flux(crossings, grid, part.report.texels.kernel_texels);
+    const std::vector<glm::vec3>& colors = options.color ? set.colors : kNoColors;
+    const std::vector<BlockShares> fits =
+        fit_directions(crossings, s, aperture, part.report.directions.levels, colors);
+    part.slab = make_slab(part.planes, first != nullptr ? *first : part.planes, aperture, grid);
+    fill(part.slab, grid, flux, fits, colors);
+    describe(part.report, part.planes, part.slab, flux);
+    return part;
+}
+
+}  // namespace
+
+void check(const ConvertOptions& options) {
+    if (options.slabs && *options.slabs != 1 && *options.slabs != 5 && *options.slabs != 6)
+        throw Error{"bad number of slabs", "--slabs", "1, 5 or 6", std::to_string(*options.slabs)};
+    const auto n = static_cast<int>(model::make_profile(options.basis).cells.size());
+    if (options.grid && (options.grid->x < n || options.grid->y < n))
+        throw Error{"grid too small for its basis", "--grid", fmt::format("at least {0}x{0}", n),
+                    fmt::format("{}x{}", options.grid->x, options.grid->y)};
+    if (options.texels && (options.texels->x < 1 || options.texels->y < 1))
+        throw Error{"bad number of texels", "--texels", "at least 1x1",
+                    fmt::format("{}x{}", options.texels->x, options.texels->y)};
+    for (const auto& plane : {options.u_plane_mm, options.s_plane_mm})
+        if (plane && !std::isfinite(*plane))
+            throw Error{"bad plane", "--u-plane-mm, --s-plane-mm", "a finite number"};
+}
+
+Conversion to_lightfield(const RaySet& set, const ConvertOptions& options) {
+    check(options);
+    Conversion result;
+    ConvertReport& report = result.report;
+    report.rays_in = set.rays.size();
+    report.flux_in = flux(set);
+    if (!(report.flux_in > 0.0))
+        throw Error{"rays without light", "", "flux > 0"};
+    const int slab_count = options.slabs.value_or(choose_slab_count(set));
+    const Members members = share_out_directions(set, slab_count);
+    report.dropped_direction = members.dropped_flux;
+    report.rays_dropped = members.dropped_rays;
+    if (members.of_slab[0].empty())
+        throw Error{"no ray goes towards +z", "first slab",
+                    "a lamp that shines along its file's +z"};
+
+    const double trim = slab_count == 1 ? kTrimOneSlab : kTrimBox;
+    std::optional<Planes> first;
+    double done = 0.0;
+    for (int s = 0; s < slab_count; ++s) {
+        const std::vector<std::uint32_t>& rays = members.of_slab[static_cast<std::size_t>(s)];
+        double slab_flux = 0.0;
+        for (const std::uint32_t r : rays)
+            slab_flux += set.rays[r].flux;
+        if (!(slab_flux > 0.0))
+            continue;
+        Part part = convert_slab(set, rays, s, first ? &*first : nullptr, options, trim, report);
+        if (!first)
+            first = part.planes;
+        report.flux_out += part.report.flux;
+        report.slabs.push_back(std::move(part.report));
+        result.lightfield.slabs.push_back(std::move(part.slab));
+        done += static_cast<double>(rays.size());
+        if (options.progress)
+            options.progress(done / static_cast<double>(set.rays.size() - members.dropped_rays));
+    }
+    double squares = 0.0;
+    for (const Ray& ray : set.rays)
+        squares += static_cast<double>(ray.flux) * ray.flux;
+    report.sigma_flux = std::sqrt(squares * report.flux_out / report.flux_in);
+    result.lightfield.quantity = set.quantity;
+    return result;
+}
+
+}  // namespace nearfield::rays

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/report/plot.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+namespace nearfield::report {
+namespace {
+
+// A gnuplot string in single quotes: nothing is interpreted, quotes are doubled.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) {
+        result += c == '\n' ? ' ' : c;
+        if (c == '\'') {
+            result += c;
+        }
+    }
+    return result + "'";
+}
+
+// What gnuplot prints for a script; nothing if it is missing or fails.
+std::optional<std::string> run_gnuplot(const std::string& script) {
+    std::string path =
+        (std::filesystem::temp_directory_path() / "nearfield-plot-XXXXXX").string();
+    const int descriptor = mkstemp(path.data());
+    if (descriptor < 0) {
+        return std::nullopt;
+    }
+    std::FILE* const file = fdopen(descriptor, "wb");
+    const bool is_written = std::fwrite(script.data(), 1, script.size(), file) == script.size();
+    const bool is_closed = std::fclose(file) == 0;
+    std::optional<std::string> output;
+    if (is_written && is_closed) {
+        if (std::FILE* const pipe = popen(("gnuplot '" + path + "' 2>/dev/null").c_str(), "r")) {
+            std::string bytes;
+            std::array<char, 65536> block;
+            for (std::size_t got = 0;
+                 (got = std::fread(block.data(), 1, block.size(), pipe)) > 0;) {
+                bytes.append(block.data(), got);
+            }
+            if (pclose(pipe) == 0 && !bytes.empty()) {
+                output = std::move(bytes);
+            }
+        }
+    }
+    unlink(path.c_str());
+    return output;
+}
+
+}  // namespace
+
+std::optional<Image> draw(const Plot& plot, const std::string& caption) {
+    std::string script =
+        "set terminal svg size 900,480 background '#ffffff' noenhanced\n"
+        "set grid\nset key outside top center horizontal\n";
+    script += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x_label) +
+              "\nset ylabel " + quoted(plot.y_label) + "\n";
+    script += plot.log_y ? "set logscale y\nset format y '%g'\n" : "";
+    std::string command = "plot ";
+    for (std::size_t k = 0; k < plot.curves.size(); ++k) {
+        const Curve& curve = plot.curves[k];
+        script += fmt::format("$curve{} << EOD\n", k);
+        for (std::size_t point = 0; point < curve.x.size(); ++point) {
+            const bool is_drawn = std::isfinite(curve.x[point]) && std::isfinite(curve.y[point]) &&
+                                  (!plot.log_y || curve.y[point] > 0.0);
+            script += is_drawn ? fmt::format("{:.8g} {:.8g}\n", curve.x[point], curve.y[point])
+                               : std::string("\n");
+        }
+        script += "EOD\n";
+        command += fmt::format("{}$curve{} with lines linewidth 1.5 title {}", k == 0 ? "" : ", ",
+                               k, quoted(curve.name));
+    }
+    const std::optional<std::string> svg = run_gnuplot(script + command + "\n");
+    return svg ? std::optional<Image>({"image/svg+xml", *svg, caption}) : std::nullopt;
+}
+
+std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
+    std::string script =
+        "set terminal pngcairo size 1000,480 noenhanced\n"
+        "set palette defined (0 '#000020', 1 '#1040a0', 2 '#00a0a0', 3 '#20c020', 4 '#f0e020', "
+        "5 '#ff7000', 6 '#ffffff')\n";
+    script += "set title " + quoted(map.title) + "\nset xlabel " + quoted(map.x_label) +
+              "\nset ylabel " + quoted(map.y_label) + "\nset cblabel " + quoted(map.value_label) +
+              "\n";
+    script += map.log_scale ? "set logscale cb\nset format cb '%g'\n" : "";
+    script += fmt::format("set cbrange [{:.8g}:{:.8g}]\n", map.low, map.high);
+    script += map.flip_x ? fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.upper.x, map.lower.x)
+                         : fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.lower.x, map.upper.x);
+    script += fmt::format("set yrange [{:.8g}:{:.8g}]\nunset key\n$map << EOD\n", map.lower.y,
+                          map.upper.y);
+    const glm::dvec2 step = (map.upper - map.lower) / glm::dvec2(map.size);
+    for (int row = 0; row < map.size.y; ++row) {
+        for (int column = 0; column < map.size.x; ++column) {
+            const glm::dvec2 at = map.lower + (glm::dvec2(column, row) + 0.5) * step;
+            const double value = map.values[static_cast<std::size_t>(row * map.size.x + column)];
+            script += fmt::format("{:.8g} {:.8g} {:.8g}\n", at.x, at.y, std::max(value, map.low));
+        }
+    }
+    const std::optional<std::string> png =
+        run_gnuplot(script + "EOD\nplot $map using 1:2:3 with image\n");
+    return png ? std::optional<Image>({"image/png", *png, caption}) : std::nullopt;
+}
+
+}  // namespace nearfield::report

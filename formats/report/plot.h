@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Plots drawn by gnuplot, which is looked for when a plot is asked for.
+#pragma once
+
+#include "formats/report/page.h"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nearfield::report {
+
+struct Curve {
+    std::string name;
+    std::vector<double> x, y;  // of equal length; points that are not finite are left out
+};
+
+struct Plot {
+    std::string title, x_label, y_label;  // labels with unit
+    std::vector<Curve> curves;
+    bool log_y = false;  // values <= 0 are left out
+};
+
+/// A map of values in false color with a scale beside it.
+struct HeatMap {
+    std::string title, x_label, y_label, value_label;
+    glm::dvec2 lower{0.0}, upper{0.0};  // of the map's rectangle, in the axes' units
+    glm::ivec2 size{0};
+    std::vector<double> values;  // [row from the bottom][column]
+    double low = 0, high = 0;    // range of the scale
+    bool log_scale = false;      // values below `low` are drawn as `low`
+    bool flip_x = false;         // x rises to the left
+};
+
+/// Nothing where gnuplot is not installed or fails; the caller says so on its page.
+std::optional<Image> draw(const Plot& plot, const std::string& caption);
+std::optional<Image> draw(const HeatMap& map, const std::string& caption);
+
+}  // namespace nearfield::report

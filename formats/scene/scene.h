@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A scene: triangles, materials, cameras and luminaires, read from and written to glTF 2.0
+/// (docs/scenes.md).
+///
+/// Frames  metres, right-handed; a camera looks along its -z with +y up; a luminaire shines along
+/// its +z. Colors  linear Rec.709.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nearfield {
+
+/// glTF's metallic-roughness parameters. reflectance() says what light they reflect.
+struct Material {
+    std::string name;
+    glm::vec3 base_color{0.8F};
+    float metallic = 0.0F;   // 0 ... 1
+    float roughness = 1.0F;  // 0 ... 1; a dielectric of roughness 1 is exactly Lambert's
+};
+
+/// Lambert's diffuse albedo, and Phong's lobe of given weight and exponent. diffuse + specular
+/// <= 1.
+struct Reflectance {
+    glm::vec3 diffuse{0.0F};
+    glm::vec3 specular{0.0F};
+    float exponent = 0.0F;
+};
+Reflectance reflectance(const Material& material);
+
+/// One glTF primitive: triangles of one material.
+struct Mesh {
+    std::string name;
+    std::vector<glm::vec3> positions_m;
+    std::vector<glm::vec3> normals;  // unit length, one a position; empty: the triangles' own
+    std::vector<glm::uvec3> triangles;
+    int material = 0;  // index into Scene::materials
+};
+
+struct Instance {
+    std::string name;  // the node's
+    int mesh = 0;      // index into Scene::meshes
+    glm::dmat4 world_from_mesh{1.0};
+};
+
+struct Camera {
+    std::string name;
+    glm::dmat4 world_from_camera{1.0};
+    double yfov_rad = 0.8;  // full vertical angle of view
+    double aspect = 0.0;    // width / height of the picture it was made for; 0: unknown
+};
+
+/// A lamp in the scene. Its matrix is a rotation, mirroring or not, times one scale factor, and a
+/// translation.
+struct LuminaireInstance {
+    std::string name;
+    std::string uri;   // of the light field, relative to the scene's folder
+    std::string path;  // the file that uri names
+    glm::dmat4 world_from_luminaire{
+        1.0};  // its scale is geometric and keeps radiance: flux goes with its square
+    bool on = true;
+    double dim = 1.0;                   // factor of its radiance, >= 0
+    std::vector<std::string> excludes;  // nodes or meshes by name that cast no shadow in its light
+};
+
+struct Scene {
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Camera> cameras;
+    std::vector<LuminaireInstance> luminaires;
+    std::vector<std::string> notes;  // what the file holds and this reader leaves out
+};
+
+/// Whether the luminaire's light passes through the instance.
+bool is_excluded(const Scene& scene, const LuminaireInstance& luminaire, const Instance& instance);
+
+/// The scale factor of a matrix as LuminaireInstance wants it; negative where it mirrors.
+/// Throws Error naming `where` if the matrix scales the axes differently or shears.
+double uniform_scale(const glm::dmat4& matrix, const std::string& where);
+
+/// Reads .gltf or .glb. Luminaires are not opened.
+/// Throws Error with file and JSON place, such as "scene.gltf:
+/// nodes[3].extensions.NEARFIELD_luminaire.dim".
+Scene read_scene(const std::string& path);
+
+enum class BufferPlace { Embedded, SideFile };
+
+/// Writes .gltf with its buffer embedded or as NAME.bin beside it, or .glb, by the path's ending;
+/// whole or not at all.
+void write_scene(const Scene& scene,
+                 const std::string& path,
+                 BufferPlace buffer = BufferPlace::Embedded);
+
+}  // namespace nearfield

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sample_data/demo_scene.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+
+namespace nearfield::sample_data {
+namespace {
+
+constexpr double kLampHeight_m = 0.65, kLampHalfDistance_m = 0.6;
+constexpr float kWall_m = 11.0F;                           // distance of the wall's face
+constexpr float kRoadRight_m = -2.0F, kRoadLeft_m = 5.0F;  // the road's edges, x
+constexpr float kStart_m = -3.0F;                          // where everything begins, z
+constexpr float kPaint_m = 0.003F;                         // thickness of lane markings
+constexpr double kAspect = 16.0 / 9.0;
+
+enum MaterialIndex {
+    kAsphalt,
+    kPaint,
+    kStone,
+    kPavement,
+    kPlaster,
+    kPlinth,
+    kRed,
+    kCar,
+    kGlass,
+    kDark
+};
+
+std::vector<Material> materials() {
+    return {{"asphalt", glm::vec3(0.19F, 0.19F, 0.195F), 0.0F, 1.0F},
+            {"paint", glm::vec3(0.80F), 0.0F, 1.0F},
+            {"stone", glm::vec3(0.42F, 0.41F, 0.39F), 0.0F, 1.0F},
+            {"pavement", glm::vec3(0.28F, 0.27F, 0.26F), 0.0F, 1.0F},
+            {"plaster", glm::vec3(0.50F, 0.49F, 0.46F), 0.0F, 1.0F},
+            {"plinth", glm::vec3(0.40F, 0.36F, 0.33F), 0.0F, 1.0F},
+            {"red", glm::vec3(0.65F, 0.05F, 0.04F), 0.0F, 1.0F},
+            {"car paint", glm::vec3(0.08F, 0.20F, 0.42F), 0.0F, 0.45F},
+            {"window", glm::vec3(0.03F, 0.03F, 0.035F), 0.0F, 0.35F},
+            {"housing", glm::vec3(0.02F), 0.0F, 1.0F}};
+}
+
+void add_mesh(Scene& scene, Mesh mesh) {
+    const int index = static_cast<int>(scene.meshes.size());
+    scene.instances.push_back({mesh.name, index, glm::dmat4(1.0)});
+    scene.meshes.push_back(std::move(mesh));
+}
+
+// An upright prism over a convex outline in the plane spanned by two axes, from `lower` to `upper`
+// along the third (axis). The outline runs counter-clockwise seen from the end of the axis.
+Mesh prism(const std::string& name,
+           int material,
+           const std::vector<glm::vec2>& outline,
+           int axis,
+           float lower,
+           float upper) {
+    Mesh mesh{name, {}, {}, {}, material};
+    const auto corner = [&](glm::vec2 p, float along) {
+        glm::vec3 at(0.0F);
+        at[axis] = along;
+        at[(axis + 1) % 3] = p.x;
+        at[(axis + 2) % 3] = p.y;
+        return at;
+    };
+    const auto count = static_cast<std::uint32_t>(outline.size());
+    for (const glm::vec2 p : outline) {
+        mesh.positions_m.push_back(corner(p, lower));
+    }
+    for (const glm::vec2 p : outline) {
+        mesh.positions_m.push_back(corner(p, upper));
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint32_t next = (k + 1) % count;
+        mesh.triangles.emplace_back(k, next, count + next);
+        mesh.triangles.emplace_back(k, count + next, count + k);
+    }
+    for (std::uint32_t k = 1; k + 1 < count; ++k) {
+        mesh.triangles.emplace_back(0U, k + 1, k);
+        mesh.triangles.emplace_back(count, count + k, count + k + 1);
+    }
+    return mesh;
+}
+
+void add_box(
+    Scene& scene, const std::string& name, int material, glm::vec3 lower, glm::vec3 upper) {
+    add_mesh(scene,
+             prism(name, material,
+                   {{lower.y, lower.z}, {upper.y, lower.z}, {upper.y, upper.z}, {lower.y, upper.z}},
+                   0, lower.x, upper.x));
+}
+
+void add_cylinder(Scene& scene,
+                  const std::string& name,
+                  int material,
+                  glm::vec2 center_zx,
+                  float radius_m,
+                  float lower_m,
+                  float upper_m) {
+    constexpr int kSides = 32;
+    std::vector<glm::vec2> outline;
+    for (int k = 0; k < kSides; ++k) {
+        const float angle = glm::two_pi<float>() * static_cast<float>(k) / kSides;
+        outline.push_back(center_zx + radius_m * glm::vec2(std::cos(angle), std::sin(angle)));
+    }
+    add_mesh(scene, prism(name, material, outline, 1, lower_m, upper_m));
+}
+
+void add_road(Scene& scene) {
+    add_box(scene, "road", kAsphalt, {kRoadRight_m, -0.1F, kStart_m}, {kRoadLeft_m, 0.0F, kWall_m});
+    for (const float x : {kRoadRight_m + 0.15F, kRoadLeft_m - 0.30F}) {
+        add_box(scene, "edge line", kPaint, {x, 0.0F, kStart_m}, {x + 0.15F, kPaint_m, kWall_m});
+    }
+    for (float z = kStart_m; z + 1.5F < kWall_m; z += 3.0F) {
+        add_box(scene, "center line", kPaint, {1.44F, 0.0F, z}, {1.56F, kPaint_m, z + 1.5F});
+    }
+    // A stop line, and bars of a crossing before the wall: near and far detail in the light.
+    add_box(scene, "stop line", kPaint, {-1.5F, 0.0F, 7.2F}, {1.35F, kPaint_m, 7.6F});
+    for (float x = -1.5F; x < 4.5F; x += 0.9F) {
+        add_box(scene, "crossing", kPaint, {x, 0.0F, 8.2F}, {x + 0.45F, kPaint_m, 10.2F});
+    }
+    add_box(scene, "right curb", kStone, {kRoadRight_m - 0.15F, -0.1F, kStart_m},
+            {kRoadRight_m, 0.12F, kWall_m});
+    add_box(scene, "left curb", kStone, {kRoadLeft_m, -0.1F, kStart_m},
+            {kRoadLeft_m + 0.15F, 0.12F, kWall_m});
+    add_box(scene, "right pavement", kPavement, {kRoadRight_m - 4.15F, -0.1F, kStart_m},
+            {kRoadRight_m - 0.15F, 0.11F, kWall_m});
+    add_box(scene, "left pavement", kPavement, {kRoadLeft_m + 0.15F, -0.1F, kStart_m},
+            {kRoadLeft_m + 3.15F, 0.11F, kWall_m});
+}
+
+void add_wall(Scene& scene) {
+    const float right = -6.2F, left = 8.2F;
+    add_box(scene, "wall", kPlaster, {right, 0.0F, kWall_m}, {left, 3.2F, kWall_m + 0.3F});
+    add_box(scene, "plinth", kPlinth, {right, 0.0F, kWall_m - 0.06F}, {left, 0.22F, kWall_m});
+    add_box(scene, "coping", kStone, {right, 3.2F, kWall_m - 0.08F},
+            {left, 3.32F, kWall_m + 0.38F});
+    for (const float x : {-5.6F, -3.4F, 3.4F, 5.6F, 7.8F}) {
+        add_box(scene, "pilaster", kPlaster, {x - 0.2F, 0.22F, kWall_m - 0.12F},
+                {x + 0.2F, 3.2F, kWall_m});
+    }
+}
+
+void add_bollard(Scene& scene, float x_m, float z_m) {
+    constexpr float kFoot_m = 0.0F, kBand_m = 0.62F, kBandEnd_m = 0.76F, kTop_m = 0.95F;
+    add_cylinder(scene, "bollard", kPaint, {z_m, x_m}, 0.055F, kFoot_m, kBand_m);
+    add_cylinder(scene, "bollard band", kRed, {z_m, x_m}, 0.056F, kBand_m, kBandEnd_m);
+    add_cylinder(scene, "bollard top", kPaint, {z_m, x_m}, 0.055F, kBandEnd_m, kTop_m);
+}
+
+void add_car(Scene& scene) {
+    add_box(scene, "car body", kCar, {2.35F, 0.25F, 5.2F}, {4.15F, 0.85F, 9.4F});
+    // The cabin's outline in (y, z), seen from the car's left.
+    add_mesh(scene,
+             prism("car cabin", kGlass,
+                   {{0.85F, 5.7F}, {1.42F, 6.5F}, {1.42F, 8.4F}, {0.85F, 9.1F}}, 0, 2.47F, 4.03F));
+    for (const float z : {6.0F, 8.6F}) {
+        for (const float x : {2.45F, 3.85F}) {
+            std::vector<glm::vec2> outline;
+            for (int k = 0; k < 32; ++k) {
+                const float angle = glm::two_pi<float>() * static_cast<float>(k) / 32.0F;
+                outline.emplace_back(0.31F + 0.31F * std::cos(angle), z + 0.31F * std::sin(angle));
+            }
+            add_mesh(scene, prism("wheel", kDark, outline, 0, x, x + 0.2F));
+        }
+    }
+}
+
+Camera look(const std::string& name, glm::dvec3 from_m, glm::dvec3 to_m, double yfov_deg) {
+    const glm::dmat4 camera_from_world = glm::lookAt(from_m, to_m, glm::dvec3(0.0, 1.0, 0.0));
+    return {name, glm::inverse(camera_from_world), glm::radians(yfov_deg), kAspect};
+}
+
+}  // namespace
+
+Scene make_demo_scene(const std::string& uri, const std::string& path, double delta_m) {
+    Scene scene;
+    scene.materials = materials();
+    add_road(scene);
+    add_wall(scene);
+    add_car(scene);
+    for (const float z : {4.6F, 6.2F, 7.8F, 9.4F}) {
+        add_bollard(scene, -1.75F, z);
+    }
+    add_bollard(scene, 1.95F, 7.0F);
+    for (const double x : {kLampHalfDistance_m, -kLampHalfDistance_m}) {
+        const bool is_left = x > 0.0;
+        LuminaireInstance lamp;
+        lamp.name = is_left ? "left headlight" : "right headlight";
+        lamp.uri = uri;
+        lamp.path = path;
+        lamp.world_from_luminaire =
+            glm::translate(glm::dmat4(1.0), glm::dvec3(x, kLampHeight_m, delta_m));
+        scene.luminaires.push_back(lamp);
+        // Behind the lens, where it casts no shadow.
+        const glm::vec3 lens(static_cast<float>(x), static_cast<float>(kLampHeight_m), 0.0F);
+        add_box(scene, "housing", kDark, lens + glm::vec3(-0.10F, -0.08F, -0.30F),
+                lens + glm::vec3(0.10F, 0.08F, -0.03F));
+    }
+    scene.cameras = {look("road", {1.1, 1.75, -0.4}, {0.15, 0.42, 8.0}, 42.0),
+                     look("driver", {0.35, 1.25, -1.6}, {0.1, 0.55, 11.0}, 28.0),
+                     look("bird", {0.4, 8.5, 3.2}, {0.4, 0.0, 7.0}, 50.0),
+                     look("side", {-4.4, 1.8, 3.4}, {0.6, 0.35, 8.0}, 48.0)};
+    return scene;
+}
+
+}  // namespace nearfield::sample_data

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Installs what building, testing and running need: Debian 12 packages and nothing else.
+set -euo pipefail
+
+packages=(
+    # tools
+    ca-certificates ccache clang-format-14 clang-tidy-14 cmake g++ git ninja-build pkg-config python3
+    # libraries
+    libbenchmark-dev libcli11-dev libembree-dev libfmt-dev libglm-dev libgmock-dev libgtest-dev libhwy-dev
+    libopenexr-dev libpng-dev libtbb-dev libtinygltf-dev libxxhash-dev nlohmann-json3-dev
+    # the reader of docs/read_luminaire.py, plots in reports
+    gnuplot-nox python3-numpy python3-openimageio
+)
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+    echo "setup: all ${#packages[@]} packages are installed"
+    exit 0
+fi
+
+echo "setup: installing ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -qq
+DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}"

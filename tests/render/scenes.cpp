@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes.h"
+
+#include "formats/model/profile.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace nearfield::test {
+namespace {
+
+constexpr double kCameraHeightM = 4.0, kFloorM = 4.0;
+
+}  // namespace
+
+LightField one_window_lamp(double aperture_m, float coefficient, Weighting weighting) {
+    Slab slab;
+    slab.delta_m = 0.1;
+    slab.grid = {1, 1};
+    slab.pitch_m = glm::dvec2(aperture_m);
+    slab.texels = {1, 1};
+    slab.s_min_m = glm::dvec2(-0.3);
+    slab.s_max_m = glm::dvec2(0.3);
+    slab.profile = model::make_profile("box");
+    slab.weighting = weighting;
+    slab.coeffs = {coefficient};
+    LightField lightfield;
+    lightfield.slabs = {slab};
+    return lightfield;
+}
+
+LuminaireInstance write_lamp(const LightField& lightfield,
+                             const std::string& name,
+                             const glm::dmat4& world_from_luminaire) {
+    LuminaireInstance lamp;
+    lamp.name = name;
+    lamp.uri = lamp.path = name + ".lightfield.exr";
+    lamp.world_from_luminaire = world_from_luminaire;
+    write_lightfield(lightfield, std::nullopt, lamp.path);
+    return lamp;
+}
+
+Mesh rectangle(const std::string& name, glm::vec2 size_m) {
+    const glm::vec2 half = 0.5F * size_m;
+    Mesh mesh;
+    mesh.name = name;
+    mesh.positions_m = {
+        {-half.x, -half.y, 0}, {half.x, -half.y, 0}, {half.x, half.y, 0}, {-half.x, half.y, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+glm::dmat4 pose(glm::dvec3 position, glm::dvec3 direction) {
+    const glm::dvec3 z = glm::normalize(direction);
+    const glm::dvec3 helper = std::abs(z.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 x = glm::normalize(glm::cross(helper, z));
+    return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0),
+            glm::dvec4(position, 1)};
+}
+
+Camera camera_at(glm::dvec3 position, glm::dvec3 direction, glm::dvec3 up, double yfov_rad) {
+    Camera camera;
+    camera.name = "camera";
+    camera.world_from_camera = glm::inverse(glm::lookAt(position, position + direction, up));
+    camera.yfov_rad = yfov_rad;
+    return camera;
+}
+
+Scene floor_scene() {
+    Scene scene;
+    scene.materials = {{"gray", glm::vec3(0.5F), 0.0F, 1.0F}};
+    scene.meshes = {rectangle("floor mesh", glm::vec2(kFloorM))};
+    scene.instances = {{"floor", 0, glm::dmat4(1.0)}};
+    // The floor's edges are the picture's upper and lower edge.
+    scene.cameras = {camera_at({0, 0, kCameraHeightM}, {0, 0, -1}, {0, 1, 0},
+                               2.0 * std::atan(0.5 * kFloorM / kCameraHeightM))};
+    return scene;
+}
+
+void add_blocker(Scene& scene, const std::string& name, glm::dvec3 center, glm::vec2 size_m) {
+    scene.instances.push_back(
+        {name, static_cast<int>(scene.meshes.size()), glm::translate(glm::dmat4(1.0), center)});
+    scene.meshes.push_back(rectangle(name + " mesh", size_m));
+}
+
+const Layer& layer(const Picture& picture, const std::string& name) {
+    for (const Layer& candidate : picture.layers)
+        if (candidate.name == name)
+            return candidate;
+    throw std::runtime_error("no layer " + name);
+}
+
+glm::dvec2 floor_position(glm::ivec2 pixel, glm::ivec2 size_px) {
+    const glm::dvec2 middle = glm::dvec2(pixel) + 0.5;
+    return glm::dvec2(middle.x - 0.5 * size_px.x, 0.5 * size_px.y - middle.y) *
+           (kFloorM / size_px.y);
+}
+
+}  // namespace nearfield::test
