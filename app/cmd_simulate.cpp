@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/progress.h"
+#include "app/size_option.h"
 #include "formats/files/atomic_file.h"
 #include "formats/model/profile.h"
 #include "sample_data/simulate.h"
@@ -19,17 +20,6 @@ struct SimulateCommand {
     sample_data::SimulateOptions options;
     bool reproducible = false;
 };
-
-// "11x9". CLI11 reports what does not parse as a usage error.
-glm::ivec2 parse_size(const std::string& text, const std::string& option) {
-    glm::ivec2 size(0);
-    int end = 0;
-    if (std::sscanf(text.c_str(), "%4dx%4d%n", &size.x, &size.y, &end) != 2 ||
-        static_cast<std::size_t>(end) != text.size() || size.x < 1 || size.y < 1) {
-        throw CLI::ValidationError(option, "expected WIDTHxHEIGHT, each 1 ... 9999, got " + text);
-    }
-    return size;
-}
 
 void run(SimulateCommand command) {
     const double start_s = now_s();

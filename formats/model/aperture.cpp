@@ -104,7 +104,7 @@ ApertureSample sample_aperture(const PreparedSlab& prepared,
             for (int c = 0; c < 3; ++c)
                 light[c] +=
                     basis *
-                    prepared.coeffs[slab.image_offset(std::min(c, slab.channels - 1), m) + offset];
+                    slab.coeffs[slab.image_offset(std::min(c, slab.channels - 1), m) + offset];
         }
     if (!(density > 0.0F))
         return sample;

@@ -2,110 +2,23 @@
 #include "formats/model/prepared.h"
 
 #include "formats/model/axis_window.h"
+#include "formats/model/float_windows.h"
 #include "formats/model/profile.h"
 #include "formats/model/row_sums.h"
 #include "formats/model/window_sum.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 namespace nearfield::model {
 namespace {
 
-using shared::AxisView;
-using shared::CellMoments;
-
 // Widest window, in tangents, over which one node at a texel's centroid stands for 1 / (1 + t^2)^2:
 // relative error h^2 / 12 f'' / 2 < 1e-4. Wider texels go by double precision's pieces.
 constexpr float kWidestCentroidTexel = 0.015F;
-
-// The windows of all basis functions along one axis, in float. Weights are padded by kRowPadding
-// zeros.
-struct FloatWindow {
-    TexelRange range;
-    float t_lo = 0.0F, t_hi = 0.0F;
-    std::size_t at = 0;  // offset of its weights in m0 and m1
-};
-struct FloatWindows {
-    std::vector<FloatWindow> of_basis;
-    std::vector<float> m0, m1;
-    float widest_texel_t = 0.0F;
-};
-
-// Adds a run of texels' moments against one cell. Copies in, separate rows out: the compiler
-// vectorizes it.
-void add_cell(SlabAxis<float> axis,
-              AxisView view,
-              TexelRange range,
-              float u_lo,
-              const std::array<double, 3>& cell,
-              float center,
-              float* m0,
-              float* m1) {
-    const auto a0 = static_cast<float>(cell[0]), a1 = static_cast<float>(cell[1]),
-               a2 = static_cast<float>(cell[2]);
-    const float inv_pitch = 1.0F / axis.pitch;
-    const float cell_lo = e_of_u(view, u_lo), cell_hi = e_of_u(view, u_lo + axis.pitch);
-#pragma omp simd
-    for (int k = 0; k < range.count; ++k) {
-        const float e_a = e_of_s(view, axis.texel_edge(range.first + k));
-        const float e_b = e_of_s(view, axis.texel_edge(range.first + k + 1));
-        const float e_lo = e_a < e_b ? e_a : e_b, e_hi = e_a < e_b ? e_b : e_a;
-        const float above = e_lo > cell_lo ? e_lo : cell_lo;
-        const float lo = above < cell_hi ? above : cell_hi;
-        const float below = e_hi < cell_hi ? e_hi : cell_hi;
-        const float hi = below > lo ? below : lo;
-        const CellMoments m = cell_moments(view, lo, hi, a0, a1, a2, center, inv_pitch);
-        m0[k] += m.m0;
-        m1[k] += m.m1;
-    }
-}
-
-void fill(FloatWindows& windows, const Slab& slab, int axis_index, float p, float height) {
-    const SlabAxis<float> axis(slab, axis_index);
-    const AxisView view = shared::axis_view(p, axis.delta, height);
-    const float half_support = 0.5F * static_cast<float>(axis.cells) * axis.pitch;
-    windows.of_basis.resize(static_cast<std::size_t>(axis.grid));
-    windows.m0.clear();
-    windows.m1.clear();
-    for (int k = 0; k < axis.grid; ++k) {
-        const auto center = static_cast<float>(slab.basis_center_m(k, k)[axis_index]);
-        const float u_lo = center - half_support, u_hi = center + half_support;
-        FloatWindow& window = windows.of_basis[static_cast<std::size_t>(k)];
-        const float s_a = shared::s_of_u(u_lo, p, axis.delta, height);
-        const float s_b = shared::s_of_u(u_hi, p, axis.delta, height);
-        window.range = texel_range(axis, s_a, s_b);
-        window.at = windows.m0.size();
-        windows.m0.resize(window.at + static_cast<std::size_t>(window.range.count) + kRowPadding,
-                          0.0F);
-        windows.m1.resize(windows.m0.size(), 0.0F);
-        for (int c = 0; c < axis.cells; ++c) {
-            const float cell_lo = u_lo + static_cast<float>(c) * axis.pitch;
-            const TexelRange seen =
-                texel_range(axis, shared::s_of_u(cell_lo, p, axis.delta, height),
-                            shared::s_of_u(cell_lo + axis.pitch, p, axis.delta, height));
-            const TexelRange range = intersection(seen, window.range);
-            const std::size_t at =
-                window.at + static_cast<std::size_t>(range.first - window.range.first);
-            add_cell(axis, view, range, cell_lo, slab.profile.cells[static_cast<std::size_t>(c)],
-                     center, windows.m0.data() + at, windows.m1.data() + at);
-        }
-
-        // Tangents of the support, cut where its texels end.
-        const float e_a = e_of_s(view, axis.texel_edge(window.range.first));
-        const float e_b = e_of_s(view, axis.texel_edge(window.range.first + window.range.count));
-        const float e_lo = std::max(e_of_u(view, u_lo), std::min(e_a, e_b));
-        const float e_hi = std::min(e_of_u(view, u_hi), std::max(e_a, e_b));
-        window.t_lo = t_of_e(view, std::min(e_lo, e_hi));
-        window.t_hi = t_of_e(view, std::max(e_lo, e_hi));
-    }
-    const float texel_e =
-        std::abs(e_of_s(view, axis.s_min + axis.texel) - e_of_s(view, axis.s_min));
-    windows.widest_texel_t =
-        std::min(texel_e * view.t_scale, 2.0F * half_support / (axis.delta + height));
-}
 
 // What one receiver sees; p and q are the weights along x that depend on its normal.
 struct View {
@@ -165,7 +78,7 @@ glm::vec3 irradiance_by_pieces(const PreparedSlab& prepared,
     glm::dvec3 total(0.0);
     for (int m = 0; m < slab.image_count(); ++m) {
         glm::dvec3 sums(0.0);
-        add_image(slab, prepared.coeffs.data() + slab.image_offset(0, m), slab.image_offset(1, 0),
+        add_image(slab, slab.coeffs.data() + slab.image_offset(0, m), slab.image_offset(1, 0),
                   x.of_basis[static_cast<std::size_t>(m % slab.grid.x)],
                   y.of_basis[static_cast<std::size_t>(m / slab.grid.x)], n, &sums.x);
         if (slab.channels == 1)
@@ -194,7 +107,11 @@ LitPart lit_part(const FloatWindow& x, const FloatWindow& y, glm::ivec4 lit) {
 }
 
 const float* first_texel(const PreparedSlab& prepared, int channel, int m, const LitPart& part) {
-    return prepared.coeffs.data() + prepared.slab.image_offset(channel, m) +
+    const Slab& slab = prepared.slab;
+    const bool is_last = channel + 1 == slab.channels && m + 1 == slab.image_count();
+    const float* image =
+        is_last ? prepared.last_image.data() : slab.coeffs.data() + slab.image_offset(channel, m);
+    return image +
            static_cast<std::size_t>(part.y.first) *
                static_cast<std::size_t>(prepared.slab.texels.x) +
            static_cast<std::size_t>(part.x.first);
@@ -274,40 +191,62 @@ void look(const PreparedSlab& prepared, const ReceiverF& receiver, View& view) {
         weigh_x(view, radiance_weighting);
 }
 
-glm::ivec4 lit_texels(const PreparedSlab& prepared, int m) {
-    const Slab& slab = prepared.slab;
-    glm::ivec4 lit(slab.texels, 0, 0);
-    for (int c = 0; c < slab.channels; ++c) {
-        const float* texel = prepared.coeffs.data() + slab.image_offset(c, m);
-        for (int j = 0; j < slab.texels.y; ++j)
-            for (int i = 0; i < slab.texels.x; ++i)
-                if (*texel++ > 0.0F)
-                    lit = {std::min(lit[0], i), std::min(lit[1], j), std::max(lit[2], i + 1),
-                           std::max(lit[3], j + 1)};
+// From the borders inwards, so that a bright image costs next to nothing.
+glm::ivec4 lit_texels(const Slab& slab, int m) {
+    const int w = slab.texels.x, h = slab.texels.y;
+    const auto is_lit = [&](int i, int j) {
+        bool lit = false;
+        for (int c = 0; c < slab.channels; ++c)
+            lit = lit || slab.coeffs[slab.image_offset(c, m) +
+                                     static_cast<std::size_t>(j) * static_cast<std::size_t>(w) +
+                                     static_cast<std::size_t>(i)] > 0.0F;
+        return lit;
+    };
+    const auto row_is_lit = [&](int j) {
+        for (int i = 0; i < w; ++i)
+            if (is_lit(i, j))
+                return true;
+        return false;
+    };
+    int bottom = 0, top = h;
+    while (bottom < h && !row_is_lit(bottom))
+        ++bottom;
+    while (top > bottom && !row_is_lit(top - 1))
+        --top;
+    int left = w, right = 0;
+    for (int j = bottom; j < top; ++j) {
+        for (int i = 0; i < left; ++i)
+            if (is_lit(i, j))
+                left = i;
+        for (int i = w; i > right; --i)
+            if (is_lit(i - 1, j))
+                right = i;
     }
-    return lit[2] > lit[0] ? lit : glm::ivec4(0);
+    return right > left ? glm::ivec4(left, bottom, right, top) : glm::ivec4(0);
 }
 
 }  // namespace
 
 PreparedSlab prepare(Slab slab) {
     PreparedSlab prepared;
-    prepared.coeffs = std::move(slab.coeffs);
-    prepared.coeffs.resize(prepared.coeffs.size() + kRowPadding * 4, 0.0F);
-    slab.coeffs = {};
     const double whole = integral(slab.profile);
     for (std::size_t c = 0; c < slab.profile.cells.size(); ++c)
         prepared.cell_share.push_back(static_cast<float>(integral(slab.profile, c) / whole));
+    prepared.lit.resize(static_cast<std::size_t>(slab.image_count()));
+    tbb::parallel_for(std::size_t{0}, prepared.lit.size(), [&](std::size_t m) {
+        prepared.lit[m] = lit_texels(slab, static_cast<int>(m));
+    });
+    prepared.last_image.assign(slab.coeffs.end() - static_cast<std::ptrdiff_t>(slab.texel_count()),
+                               slab.coeffs.end());
+    prepared.last_image.resize(slab.texel_count() + kRowPadding, 0.0F);
     prepared.slab = std::move(slab);
-    for (int m = 0; m < prepared.slab.image_count(); ++m)
-        prepared.lit.push_back(lit_texels(prepared, m));
     return prepared;
 }
 
-void irradiance(const PreparedSlab& prepared,
-                std::span<const ReceiverF> receivers,
-                std::span<glm::vec3> results,
-                std::span<float> image_y) {
+std::uint64_t irradiance(const PreparedSlab& prepared,
+                         std::span<const ReceiverF> receivers,
+                         std::span<glm::vec3> results,
+                         std::span<float> image_y) {
     const Slab& slab = prepared.slab;
     const auto images = static_cast<std::size_t>(slab.image_count());
     const bool radiance_weighting = slab.weighting == Weighting::Radiance;
@@ -324,6 +263,7 @@ void irradiance(const PreparedSlab& prepared,
     // Images outside, receivers inside: neighbors read the same window while it is in the
     // first-level cache.
     const float scale = radiance_weighting ? 1.0F : static_cast<float>(slab.delta_m * slab.delta_m);
+    std::uint64_t multiply_adds = 0;
     for (std::size_t m = 0; m < images; ++m)
         for (std::size_t k = 0; k < receivers.size(); ++k) {
             const View& view = views[k];
@@ -334,6 +274,9 @@ void irradiance(const PreparedSlab& prepared,
             const LitPart part = lit_part(x, y, prepared.lit[m]);
             if (part.x.count == 0 || part.y.count == 0)
                 continue;
+            multiply_adds += 2 * static_cast<std::uint64_t>(slab.channels) *
+                             static_cast<std::uint64_t>(part.x.count) *
+                             static_cast<std::uint64_t>(part.y.count);
             glm::vec3 sums(0.0F);
             for (int c = 0; c < slab.channels; ++c) {
                 const auto image = static_cast<int>(m);
@@ -348,6 +291,7 @@ void irradiance(const PreparedSlab& prepared,
             if (!image_y.empty())
                 image_y[k * images + m] = luminance(sums);
         }
+    return multiply_adds;
 }
 
 glm::vec3 irradiance(const PreparedSlab& prepared,

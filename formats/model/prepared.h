@@ -8,21 +8,22 @@
 
 #include <glm/glm.hpp>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace nearfield::model {
 
-/// A slab whose coefficients are padded so that SIMD may read beyond a row's end. `slab.coeffs` is
-/// empty.
+/// A slab made ready for SIMD, which may read a few floats beyond a row's end.
 struct PreparedSlab {
     Slab slab;
-    std::vector<float> coeffs;      // [channel][m][j][i], then padding
+    std::vector<float>
+        last_image;  // the array's last image again, with kRowPadding zeros behind it
     std::vector<float> cell_share;  // [n] of int phi
     std::vector<glm::ivec4> lit;  // [m] x, y of the first texel with light and of one past the last
 };
 
-/// Takes the slab's coefficients over. Cost: one copy.
+/// Takes the slab over. Cost: a look at the dark borders of all images, in parallel.
 PreparedSlab prepare(Slab slab);
 
 /// A shaded point in the slab's frame, and its unit normal.
@@ -41,11 +42,11 @@ glm::vec3 irradiance(const PreparedSlab& prepared,
 
 /// The same for neighboring receivers at once (a tile of 4 x 4 pixels), about twice as fast: what
 /// they see of an image is read from memory once. results has one entry a receiver; image_y, where
-/// not empty, [receiver][image].
-void irradiance(const PreparedSlab& prepared,
-                std::span<const ReceiverF> receivers,
-                std::span<glm::vec3> results,
-                std::span<float> image_y = {});
+/// not empty, [receiver][image]. Returns the multiply-adds that it took.
+std::uint64_t irradiance(const PreparedSlab& prepared,
+                         std::span<const ReceiverF> receivers,
+                         std::span<glm::vec3> results,
+                         std::span<float> image_y = {});
 
 /// A point on U drawn for a receiver, and what it carries.
 struct ApertureSample {

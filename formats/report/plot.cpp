@@ -14,22 +14,19 @@
 namespace nearfield::report {
 namespace {
 
-// A gnuplot string in single quotes: nothing is interpreted, quotes are doubled.
+// A gnuplot string in single quotes, where nothing is interpreted. gnuplot 5.4 does not read a
+// doubled quote everywhere, so a quote becomes the typographic one.
 std::string quoted(const std::string& text) {
     std::string result = "'";
     for (const char c : text) {
-        result += c == '\n' ? ' ' : c;
-        if (c == '\'') {
-            result += c;
-        }
+        result += c == '\'' ? std::string("\u2019") : std::string(1, c == '\n' ? ' ' : c);
     }
     return result + "'";
 }
 
 // What gnuplot prints for a script; nothing if it is missing or fails.
 std::optional<std::string> run_gnuplot(const std::string& script) {
-    std::string path =
-        (std::filesystem::temp_directory_path() / "nearfield-plot-XXXXXX").string();
+    std::string path = (std::filesystem::temp_directory_path() / "nearfield-plot-XXXXXX").string();
     const int descriptor = mkstemp(path.data());
     if (descriptor < 0) {
         return std::nullopt;
