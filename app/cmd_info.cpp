@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.h"
 #include "app/describe.h"
-#include "formats/files/error.h"
+#include "app/options.h"
+#include "app/output.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,8 +18,8 @@ struct InfoCommand {
     bool verify = false, json = false;
 };
 
-void print(const InfoCommand& command, const nlohmann::ordered_json& description) {
-    fmt::print("{}", command.json ? description.dump(2) + "\n" : as_text(description));
+void print_description(const InfoCommand& command, const nlohmann::ordered_json& description) {
+    print(command.json ? description.dump(2) + "\n" : as_text(description));
 }
 
 void explain_luminaire(const InfoCommand& command, const FileKind& kind) {
@@ -30,27 +31,36 @@ void explain_luminaire(const InfoCommand& command, const FileKind& kind) {
     } else {
         luminaire.lightfield = read_lightfield(command.input);
     }
-    print(command, describe(luminaire.lightfield, kind, check));
-    if (check && check->different > 0)
+    print_description(command, describe(luminaire.lightfield, kind, check));
+    if (command.verify && (!check || check->values == 0))
+        say(fmt::format("{}: nothing to verify: it holds no tables\n", command.input));
+    if (check && check->different > 0) {
+        say(fmt::format("{}: {} of {} stored values differ from what the coefficients give\n",
+                        command.input, check->different, check->values));
         throw CLI::RuntimeError(3);
+    }
 }
 
 void run(const InfoCommand& command) {
     if (holds_luminaire(command.input))
         explain_luminaire(command, read_kind(command.input));
     else
-        print(command, describe(read_picture(command.input)));
+        print_description(command, describe(read_picture(command.input)));
 }
 
 }  // namespace
 
 void add_info(CLI::App& app) {
     auto c = std::make_shared<InfoCommand>();
-    CLI::App* sub = app.add_subcommand("info", "Explains a file that this program writes");
-    sub->add_option("file", c->input, "light field, luminaire or picture (.exr)")->required();
+    CLI::App* sub = add_command(app, "info", "Explains a file that this program writes",
+                                {"nearfield info headlight.luminaire.exr --verify",
+                                 "nearfield info headlight.luminaire.exr --json"});
+    sub->add_option("file", c->input, "light field, luminaire or picture, .exr")
+        ->required()
+        ->type_name("FILE");
     sub->add_flag("--verify", c->verify,
                   "check every stored table against the coefficients; exit 3 if one differs");
-    sub->add_flag("--json", c->json, "for machines");
+    sub->add_flag("--json", c->json, "as JSON (docs/formats.md)");
     sub->callback([c] { run(*c); });
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.h"
+#include "app/options.h"
+#include "app/output.h"
 #include "formats/files/luminaire.h"
 #include "formats/model/tables.h"
 
@@ -7,19 +9,20 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
 #include <utility>
 
 namespace nearfield::app {
 namespace {
 
 struct PackCommand {
-    std::string input, output;
-    bool lean = false, reproducible = false;
+    std::string input;
+    Output output;
+    bool lean = false;
 };
 
 void run(const PackCommand& command) {
     const double start_s = now_s();
+    check_outputs({command.output.path}, {command.input});
     LightField lightfield = read_lightfield(command.input);
     // What made the light field stays on record: its figures, and its file as this file's input.
     Provenance provenance;
@@ -33,25 +36,27 @@ void run(const PackCommand& command) {
     lightfield.provenance = std::move(provenance);
 
     const Luminaire luminaire = model::pack(std::move(lightfield), command.lean);
-    const RunRecord record =
-        finish_run(start_s, static_cast<int>(std::thread::hardware_concurrency()));
-    write_luminaire(luminaire, command.reproducible ? std::nullopt : std::optional(record),
-                    command.output);
-    fmt::print(stderr, "{}: {} slab{}, {}; {:.2f} s, peak memory {:.0f} MiB\n", command.output,
-               luminaire.lightfield.slabs.size(), luminaire.lightfield.slabs.size() == 1 ? "" : "s",
-               command.lean ? "lean" : "with tables", record.time_s, record.peak_memory_mib);
+    const RunRecord run = record_run(start_s);
+    write_luminaire(luminaire, command.output.stored(run), command.output.path);
+    const std::size_t slabs = luminaire.lightfield.slabs.size();
+    say(fmt::format("{}: {} slab{}, {}; {}\n", command.output.path, slabs, slabs == 1 ? "" : "s",
+                    command.lean ? "lean" : "with tables", cost(run)));
 }
 
 }  // namespace
 
 void add_pack(CLI::App& app) {
     auto c = std::make_shared<PackCommand>();
-    CLI::App* sub = app.add_subcommand("pack", "Makes a light field ready to render");
-    sub->add_option("lightfield", c->input, "NAME.lightfield.exr")->required();
-    sub->add_option("-o,--output", c->output, "NAME.luminaire.exr")->required();
+    CLI::App* sub =
+        add_command(app, "pack", "Makes a light field ready to render",
+                    {"nearfield pack headlight.lightfield.exr -o headlight.luminaire.exr",
+                     "nearfield pack headlight.lightfield.exr -o headlight.luminaire.exr --lean"});
+    sub->add_option("lightfield", c->input, "light field, NAME.lightfield.exr")
+        ->required()
+        ->type_name("FILE");
+    add_output(*sub, c->output, "luminaire to write, NAME.luminaire.exr");
     sub->add_flag("--lean", c->lean,
                   "leave out the tables for samplers: smaller, and a loader builds them faster");
-    sub->add_flag("--reproducible", c->reproducible, "leave date, time and memory out");
     sub->callback([c] { run(*c); });
 }
 

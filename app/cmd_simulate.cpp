@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "app/commands.h"
+#include "app/options.h"
+#include "app/output.h"
 #include "app/progress.h"
-#include "app/size_option.h"
 #include "formats/files/atomic_file.h"
 #include "formats/model/profile.h"
 #include "sample_data/simulate.h"
@@ -8,71 +10,74 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <map>
+#include <cstdint>
+#include <limits>
 #include <memory>
-#include <thread>
 
 namespace nearfield::app {
 namespace {
 
+enum class Lamp { Headlight, Reference };
+
 struct SimulateCommand {
-    std::string lamp, output, receivers, grid = "11x9", texels = "256x128";
+    Lamp lamp = Lamp::Headlight;
+    std::string receivers;
+    Output output;
     sample_data::SimulateOptions options;
-    bool reproducible = false;
 };
 
-void run(SimulateCommand command) {
+LightField simulate(const SimulateCommand& command) {
+    if (command.lamp == Lamp::Reference)
+        return sample_data::simulate_reference();
+    ProgressLine progress("simulate");
+    return sample_data::simulate_headlight(command.options,
+                                           [&](double fraction) { progress.update(fraction); })
+        .lightfield;
+}
+
+void run(const SimulateCommand& command) {
     const double start_s = now_s();
-    command.options.grid = parse_size(command.grid, "--grid");
-    command.options.texels = parse_size(command.texels, "--texels");
-    LightField lightfield;
-    if (command.lamp == "reference") {
-        lightfield = sample_data::simulate_reference();
-    } else {
-        ProgressLine progress("simulate");
-        lightfield = sample_data::simulate_headlight(command.options, [&](double fraction) {
-                         progress.update(fraction);
-                     }).lightfield;
-        progress.finish();
-    }
-    if (!command.receivers.empty()) {
+    check_size(command.options.grid, command.options.texels);
+    check_outputs({command.output.path, command.receivers}, {});
+    const LightField lightfield = simulate(command);
+    if (!command.receivers.empty())
         write_file(sample_data::receivers_csv(), command.receivers);
-    }
-    const RunRecord run =
-        finish_run(start_s, static_cast<int>(std::thread::hardware_concurrency()));
-    write_lightfield(lightfield, command.reproducible ? std::nullopt : std::optional(run),
-                     command.output);
-    for (const auto& [name, value] : lightfield.provenance.figures) {
-        fmt::print(stderr, "{}: {:.6g}\n", name, value);
-    }
+    const RunRecord run = record_run(start_s);
+    write_lightfield(lightfield, command.output.stored(run), command.output.path);
+    for (const auto& [name, value] : lightfield.provenance.figures)
+        say(fmt::format("{}: {:.6g}\n", name, value));
+    say(fmt::format("{}: {}\n", command.output.path, cost(run)));
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app) {
     auto c = std::make_shared<SimulateCommand>();
-    CLI::App* sub =
-        app.add_subcommand("simulate", "Makes a synthetic lamp whose radiance is known");
-    const auto add = [&](const char* name, auto& value, const char* help) {
-        return sub->add_option(name, value, help)->capture_default_str();
-    };
-    add("lamp", c->lamp, "headlight, or reference (has no options)")
+    CLI::App* sub = add_command(
+        app, "simulate", "Makes a synthetic lamp whose radiance is known",
+        {"nearfield simulate headlight -o headlight.lightfield.exr",
+         "nearfield simulate reference -o reference.lightfield.exr --receivers points.csv"});
+    add_choice(
+        *sub, "lamp", c->lamp, {{"headlight", Lamp::Headlight}, {"reference", Lamp::Reference}},
+        "headlight, or reference, which takes none of the options from --delta-m to --refine")
         ->required()
-        ->check(CLI::IsMember({"headlight", "reference"}));
-    add("-o,--output", c->output, "NAME.lightfield.exr")->required();
-    add("--delta-m", c->options.delta_m, "distance of the planes")->check(CLI::Range(0.05, 100.0));
-    add("--grid", c->grid, "basis functions over the lens, WxH");
-    add("--texels", c->texels, "of every image, WxH");
-    add("--basis", c->options.basis, "profile")->check(CLI::IsMember(model::profile_names()));
-    const std::map<std::string, Weighting> weightings{{"irradiance", Weighting::Irradiance},
-                                                      {"radiance", Weighting::Radiance}};
-    sub->add_option("--weighting", c->options.weighting, "irradiance (default) or radiance")
-        ->transform(CLI::CheckedTransformer(weightings));
-    add("--channels", c->options.channels, "3 (RGB) or 1 (Y)")->check(CLI::IsMember({1, 3}));
-    add("--seed", c->options.seed, "of the facets' pattern");
-    add("--refine", c->options.refine, "multiplies quadrature nodes")->check(CLI::Range(1, 8));
-    add("--receivers", c->receivers, "also write the reference receivers as CSV");
-    sub->add_flag("--reproducible", c->reproducible, "leave date, time and memory out");
+        ->default_str("");
+    add_output(*sub, c->output, "light field to write, NAME.lightfield.exr");
+    add_number(*sub, "--delta-m", c->options.delta_m, 0.05, 100.0, "M", "distance of the planes");
+    add_size(*sub, "--grid", c->options.grid, "basis functions over the lens");
+    add_size(*sub, "--texels", c->options.texels, "texels of every image");
+    add_choice(*sub, "--basis", c->options.basis, same_words(model::profile_names()),
+               "shape of the basis functions");
+    add_choice(*sub, "--weighting", c->options.weighting,
+               {{"irradiance", Weighting::Irradiance}, {"radiance", Weighting::Radiance}},
+               "what the coefficients are a density of");
+    add_choice(*sub, "--channels", c->options.channels, {{"3", 3}, {"1", 1}}, "RGB, or Y alone");
+    add_number(*sub, "--seed", c->options.seed, std::uint64_t{0},
+               std::numeric_limits<std::uint64_t>::max(), "N", "of the facets' pattern");
+    add_number(*sub, "--refine", c->options.refine, 1, 8, "N", "multiplies quadrature nodes");
+    sub->add_option("--receivers", c->receivers,
+                    "also write the reference lamp's receivers, CSV for probe --points")
+        ->type_name("FILE");
     sub->callback([c] { run(*c); });
 }
 

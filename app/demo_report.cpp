@@ -219,12 +219,14 @@ nlohmann::ordered_json to_json(const DemoResult& result, const std::string& comm
         json["figures"][name] = value;
     }
     for (const DemoView& view : result.views) {
-        json["views"].push_back({{"camera", view.camera},
-                                 {"png", view.png},
-                                 {"time_s", view.time_s},
-                                 {"exposure_ev", view.exposure_ev},
-                                 {"sigma_mean_rel", view.report.sigma_mean_rel},
-                                 {"sigma_worst_rel", view.report.sigma_worst_rel}});
+        json["views"].push_back(
+            {{"camera", view.camera},
+             {"png", view.png},
+             {"time_s", view.time_s},
+             {"exposure_ev", view.exposure_ev},
+             {"sigma_mean_rel", view.report.sampling.mean_rel},
+             {"sigma_p95_rel", view.report.sampling.p95_rel},
+             {"sigma_share_above_10_percent", view.report.sampling.share_above_10_percent}});
     }
     return json;
 }

@@ -3,9 +3,10 @@
 
 #include "formats/files/provenance.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include <cstdio>
 #include <utility>
 
 namespace nearfield::app {
@@ -28,7 +29,8 @@ void ProgressLine::update(double fraction) {
     drawn_s_ = now;
     const double elapsed = now - start_s_;
     const std::string left =
-        fraction > 0.02 ? fmt::format(", {:.0f} s left", elapsed * (1.0 - fraction) / fraction) : "";
+        fraction > 0.02 ? fmt::format(", {:.0f} s left", elapsed * (1.0 - fraction) / fraction)
+                        : "";
     fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s{}\x1b[K", name_, 100.0 * fraction, elapsed, left);
     std::fflush(stderr);
 }

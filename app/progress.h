@@ -6,7 +6,8 @@
 
 namespace nearfield::app {
 
-/// One line on stderr that says how far a stage is and how long it still takes; nothing where stderr is no terminal.
+/// One line on stderr that says how far a stage is and how long it still takes; nothing where
+/// stderr is no terminal.
 class ProgressLine {
   public:
     explicit ProgressLine(std::string name);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sample_data/basis_solve.h"
 
-#include "formats/files/error.h"
 #include "formats/model/profile.h"
 #include "sample_data/aperture.h"
 
@@ -68,14 +67,14 @@ std::vector<double> unconstrained(const Row& row, std::span<const double> b) {
     for (int y = 0; y < row.y.count; ++y) {
         for (int x = 0; x < row.x.count; ++x) {
             for (int k = 0; k < row.x.count; ++k) {
-                const double factor = row.x.inverse[static_cast<std::size_t>(x * row.x.count + k)];
+                const double factor = row.x.inverse[row.x.at(x, k)];
                 add_scaled(&half[row.offset(x, y)], &b[row.offset(k, y)], factor, row.width);
             }
         }
     }
     for (int y = 0; y < row.y.count; ++y) {
         for (int k = 0; k < row.y.count; ++k) {
-            const double factor = row.y.inverse[static_cast<std::size_t>(y * row.y.count + k)];
+            const double factor = row.y.inverse[row.y.at(y, k)];
             add_scaled(&c[row.offset(0, y)], &half[row.offset(0, k)], factor,
                        row.width * static_cast<std::size_t>(row.x.count));
         }
@@ -91,9 +90,7 @@ double relax_one(const Row& row,
                  int y,
                  std::vector<double>& residual,
                  std::vector<double>& c) {
-    const auto gram = [](const Axis& axis, int k, int m) {
-        return axis.gram[static_cast<std::size_t>(k * axis.count + m)];
-    };
+    const auto gram = [](const Axis& axis, int k, int m) { return axis.gram[axis.at(k, m)]; };
     const std::size_t here = row.offset(x, y);
     std::copy_n(&b[here], row.width, residual.begin());
     const int reach = static_cast<int>(row.x.profile.cells.size()) - 1;
@@ -140,6 +137,7 @@ double Axis::value(int k, double u_m) const {
 std::vector<double> Axis::cell_edges_m() const {
     const int cells = static_cast<int>(profile.cells.size());
     std::vector<double> edges;
+    edges.reserve(static_cast<std::size_t>(count + cells));
     for (int k = 0; k < count + cells; ++k) {
         edges.push_back(first_center_m + (k - 0.5 * cells) * pitch_m);
     }
@@ -160,7 +158,7 @@ Axis make_axis(const Slab& planes, int dimension) {
     for (const Node& node : gauss_nodes(edges.front(), edges.back(), edges, axis.pitch_m)) {
         for (int k = 0; k < axis.count; ++k) {
             for (int m = 0; m < axis.count; ++m) {
-                axis.gram[static_cast<std::size_t>(k * axis.count + m)] +=
+                axis.gram[axis.at(k, m)] +=
                     node.weight_m * axis.value(k, node.at_m) * axis.value(m, node.at_m);
             }
         }

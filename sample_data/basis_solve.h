@@ -16,12 +16,18 @@ struct Axis {
     double pitch_m = 0, first_center_m = 0, integral_m = 0;
     std::vector<double> gram, inverse;  // count x count
 
+    /// Offset in gram and inverse.
+    std::size_t at(int k, int m) const {
+        return static_cast<std::size_t>(k) * static_cast<std::size_t>(count) +
+               static_cast<std::size_t>(m);
+    }
     double value(int k, double u_m) const;
     /// Borders of all functions' cells, rising.
     std::vector<double> cell_edges_m() const;
 };
 
-/// Along x (dimension 0) or y (1). Throws Error where the functions are not linearly independent.
+/// Along x (dimension 0) or y (1). The functions must be linearly independent, as those of all
+/// named profiles are. Cost    count^3.
 Axis make_axis(const Slab& planes, int dimension);
 
 /// One basis function's index and value at a point.

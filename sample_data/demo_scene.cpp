@@ -14,7 +14,8 @@ constexpr double kLampHeight_m = 0.65, kLampHalfDistance_m = 0.6;
 constexpr float kWall_m = 11.0F;                           // distance of the wall's face
 constexpr float kRoadRight_m = -2.0F, kRoadLeft_m = 5.0F;  // the road's edges, x
 constexpr float kStart_m = -3.0F;                          // where everything begins, z
-constexpr float kPaint_m = 0.003F;                         // thickness of lane markings
+constexpr float kPaint_m = 0.0004F;                        // dry thickness of road paint
+constexpr float kStop_m = 7.2F;                            // where the stop line begins, z
 constexpr double kAspect = 16.0 / 9.0;
 
 enum MaterialIndex {
@@ -27,7 +28,8 @@ enum MaterialIndex {
     kRed,
     kCar,
     kGlass,
-    kDark
+    kDark,
+    kPlastic
 };
 
 std::vector<Material> materials() {
@@ -35,12 +37,13 @@ std::vector<Material> materials() {
             {"paint", glm::vec3(0.80F), 0.0F, 1.0F},
             {"stone", glm::vec3(0.42F, 0.41F, 0.39F), 0.0F, 1.0F},
             {"pavement", glm::vec3(0.28F, 0.27F, 0.26F), 0.0F, 1.0F},
-            {"plaster", glm::vec3(0.50F, 0.49F, 0.46F), 0.0F, 1.0F},
-            {"plinth", glm::vec3(0.40F, 0.36F, 0.33F), 0.0F, 1.0F},
-            {"red", glm::vec3(0.65F, 0.05F, 0.04F), 0.0F, 1.0F},
+            {"plaster", glm::vec3(0.30F, 0.295F, 0.28F), 0.0F, 1.0F},
+            {"plinth", glm::vec3(0.22F, 0.20F, 0.185F), 0.0F, 1.0F},
+            {"red", glm::vec3(0.40F, 0.03F, 0.025F), 0.0F, 1.0F},
             {"car paint", glm::vec3(0.08F, 0.20F, 0.42F), 0.0F, 0.45F},
             {"window", glm::vec3(0.03F, 0.03F, 0.035F), 0.0F, 0.35F},
-            {"housing", glm::vec3(0.02F), 0.0F, 1.0F}};
+            {"housing", glm::vec3(0.02F), 0.0F, 1.0F},
+            {"plastic", glm::vec3(0.40F), 0.0F, 1.0F}};
 }
 
 void add_mesh(Scene& scene, Mesh mesh) {
@@ -92,6 +95,18 @@ void add_box(
                    0, lower.x, upper.x));
 }
 
+// Paint on the road, a sheet without sides: upright sides of a millimetre would stand square to the
+// light that grazes the road, far brighter than the paint and far thinner than a pixel.
+void add_marking(Scene& scene, const std::string& name, glm::vec2 lower_xz, glm::vec2 upper_xz) {
+    Mesh mesh{name, {}, {}, {}, kPaint};
+    mesh.positions_m = {{lower_xz.x, kPaint_m, lower_xz.y},
+                        {lower_xz.x, kPaint_m, upper_xz.y},
+                        {upper_xz.x, kPaint_m, upper_xz.y},
+                        {upper_xz.x, kPaint_m, lower_xz.y}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    add_mesh(scene, std::move(mesh));
+}
+
 void add_cylinder(Scene& scene,
                   const std::string& name,
                   int material,
@@ -111,15 +126,15 @@ void add_cylinder(Scene& scene,
 void add_road(Scene& scene) {
     add_box(scene, "road", kAsphalt, {kRoadRight_m, -0.1F, kStart_m}, {kRoadLeft_m, 0.0F, kWall_m});
     for (const float x : {kRoadRight_m + 0.15F, kRoadLeft_m - 0.30F}) {
-        add_box(scene, "edge line", kPaint, {x, 0.0F, kStart_m}, {x + 0.15F, kPaint_m, kWall_m});
+        add_marking(scene, "edge line", {x, kStart_m}, {x + 0.15F, kWall_m - 0.1F});
     }
-    for (float z = kStart_m; z + 1.5F < kWall_m; z += 3.0F) {
-        add_box(scene, "center line", kPaint, {1.44F, 0.0F, z}, {1.56F, kPaint_m, z + 1.5F});
+    for (float z = kStart_m; z + 1.5F < kStop_m; z += 3.0F) {
+        add_marking(scene, "center line", {1.44F, z}, {1.56F, z + 1.5F});
     }
     // A stop line, and bars of a crossing before the wall: near and far detail in the light.
-    add_box(scene, "stop line", kPaint, {-1.5F, 0.0F, 7.2F}, {1.35F, kPaint_m, 7.6F});
+    add_marking(scene, "stop line", {-1.5F, kStop_m}, {1.35F, kStop_m + 0.4F});
     for (float x = -1.5F; x < 4.5F; x += 0.9F) {
-        add_box(scene, "crossing", kPaint, {x, 0.0F, 8.2F}, {x + 0.45F, kPaint_m, 10.2F});
+        add_marking(scene, "crossing", {x, 8.2F}, {x + 0.45F, 10.2F});
     }
     add_box(scene, "right curb", kStone, {kRoadRight_m - 0.15F, -0.1F, kStart_m},
             {kRoadRight_m, 0.12F, kWall_m});
@@ -134,20 +149,26 @@ void add_road(Scene& scene) {
 void add_wall(Scene& scene) {
     const float right = -6.2F, left = 8.2F;
     add_box(scene, "wall", kPlaster, {right, 0.0F, kWall_m}, {left, 3.2F, kWall_m + 0.3F});
-    add_box(scene, "plinth", kPlinth, {right, 0.0F, kWall_m - 0.06F}, {left, 0.22F, kWall_m});
+    // Its top slopes, to shed water; the outline in (y, z), seen from the left.
+    add_mesh(
+        scene,
+        prism(
+            "plinth", kPlinth,
+            {{0.0F, kWall_m - 0.06F}, {0.20F, kWall_m - 0.06F}, {0.28F, kWall_m}, {0.0F, kWall_m}},
+            0, right, left));
     add_box(scene, "coping", kStone, {right, 3.2F, kWall_m - 0.08F},
             {left, 3.32F, kWall_m + 0.38F});
     for (const float x : {-5.6F, -3.4F, 3.4F, 5.6F, 7.8F}) {
-        add_box(scene, "pilaster", kPlaster, {x - 0.2F, 0.22F, kWall_m - 0.12F},
+        add_box(scene, "pilaster", kPlaster, {x - 0.2F, 0.0F, kWall_m - 0.12F},
                 {x + 0.2F, 3.2F, kWall_m});
     }
 }
 
 void add_bollard(Scene& scene, float x_m, float z_m) {
     constexpr float kFoot_m = 0.0F, kBand_m = 0.62F, kBandEnd_m = 0.76F, kTop_m = 0.95F;
-    add_cylinder(scene, "bollard", kPaint, {z_m, x_m}, 0.055F, kFoot_m, kBand_m);
+    add_cylinder(scene, "bollard", kPlastic, {z_m, x_m}, 0.055F, kFoot_m, kBand_m);
     add_cylinder(scene, "bollard band", kRed, {z_m, x_m}, 0.056F, kBand_m, kBandEnd_m);
-    add_cylinder(scene, "bollard top", kPaint, {z_m, x_m}, 0.055F, kBandEnd_m, kTop_m);
+    add_cylinder(scene, "bollard top", kPlastic, {z_m, x_m}, 0.055F, kBandEnd_m, kTop_m);
 }
 
 void add_car(Scene& scene) {

@@ -105,6 +105,27 @@ glm::dvec3 integrate_lens(const Headlight& headlight,
     return sum;
 }
 
+// Integral of L cos^4 over a product of tangents, through one point of the lens: lm/m^2.
+glm::dvec3 flux_per_area(const Headlight& headlight,
+                         glm::dvec2 u_m,
+                         const std::vector<Node>& tangents_x,
+                         const std::vector<Node>& tangents_y) {
+    const std::size_t count = tangents_x.size();
+    std::vector<double> x(count), rgb(3 * count);
+    std::transform(tangents_x.begin(), tangents_x.end(), x.begin(),
+                   [](const Node& node) { return node.at_m; });
+    glm::dvec3 sum(0.0);
+    for (const Node& t_y : tangents_y) {
+        radiance_row(headlight, u_m, t_y.at_m, x, rgb);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double q = 1.0 + x[i] * x[i] + t_y.at_m * t_y.at_m;
+            sum += t_y.weight_m * tangents_x[i].weight_m / (q * q) *
+                   glm::dvec3(rgb[i], rgb[count + i], rgb[2 * count + i]);
+        }
+    }
+    return sum;
+}
+
 }  // namespace
 
 Headlight make_headlight(std::uint64_t seed) {
@@ -175,24 +196,13 @@ glm::dvec3 flux(const Headlight& headlight) {
         gauss_nodes(kBeamMin.y - shift.y, kBeamMax.y + shift.y, {}, 0.25 * kStepWidth[0]);
     const std::vector<Node> tangents_x =
         gauss_nodes(kBeamMin.x - shift.x, kBeamMax.x + shift.x, {0.0}, 0.01);
-    std::vector<double> x(tangents_x.size());
-    std::transform(tangents_x.begin(), tangents_x.end(), x.begin(),
-                   [](const Node& node) { return node.at_m; });
     const std::vector<ApertureRow> rows = aperture_rows(headlight_aperture(), kFacet_m);
     std::vector<glm::dvec3> row_sums(rows.size(), glm::dvec3(0.0));
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-        std::vector<double> rgb(3 * x.size());
         for (const Node& u_x : rows[r].x) {
-            for (const Node& t_y : tangents_y) {
-                radiance_row(headlight, {u_x.at_m, rows[r].y.at_m}, t_y.at_m, x, rgb);
-                for (std::size_t i = 0; i < x.size(); ++i) {
-                    const double q = 1.0 + x[i] * x[i] + t_y.at_m * t_y.at_m;
-                    const double weight = rows[r].y.weight_m * u_x.weight_m * t_y.weight_m *
-                                          tangents_x[i].weight_m / (q * q);
-                    row_sums[r] +=
-                        weight * glm::dvec3(rgb[i], rgb[x.size() + i], rgb[2 * x.size() + i]);
-                }
-            }
+            row_sums[r] +=
+                rows[r].y.weight_m * u_x.weight_m *
+                flux_per_area(headlight, {u_x.at_m, rows[r].y.at_m}, tangents_x, tangents_y);
         }
     });
     glm::dvec3 sum(0.0);

@@ -85,13 +85,16 @@ PixelImage lens_picture(const Headlight& headlight,
     PixelImage picture = blank(glm::ivec2(columns, 2) * (cell + kGap_px) - kGap_px);
     for (int column = 0; column < columns; ++column) {
         const glm::dvec2 tangent = tangents[static_cast<std::size_t>(column)];
-        std::vector<glm::dvec3> seen(2 * static_cast<std::size_t>(cell.x * cell.y));
-        tbb::parallel_for(0, cell.x * cell.y, [&](int k) {
-            const glm::dvec2 share = (glm::dvec2(k % cell.x, k / cell.x) + 0.5) / glm::dvec2(cell);
+        const std::size_t pixels =
+            static_cast<std::size_t>(cell.x) * static_cast<std::size_t>(cell.y);
+        std::vector<glm::dvec3> seen(2 * pixels);
+        tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t k) {
+            const int pixel = static_cast<int>(k);
+            const glm::dvec2 share =
+                (glm::dvec2(pixel % cell.x, pixel / cell.x) + 0.5) / glm::dvec2(cell);
             const glm::dvec2 u_m(half_m * (2.0 * share.x - 1.0), half_m * (1.0 - 2.0 * share.y));
-            seen[static_cast<std::size_t>(k)] = radiance(headlight, u_m, tangent);
-            seen[static_cast<std::size_t>(cell.x * cell.y + k)] =
-                model::radiance(slab, u_m, u_m + slab.delta_m * tangent);
+            seen[k] = radiance(headlight, u_m, tangent);
+            seen[pixels + k] = model::radiance(slab, u_m, u_m + slab.delta_m * tangent);
         });
         double brightest = 0.0;
         for (const glm::dvec3& color : seen) {

@@ -21,6 +21,11 @@ namespace {
 // quadrature's error.
 constexpr int kProbeStep = 32;
 
+// What is refused before time and memory are spent: Gram matrices are inverted densely (cubic in
+// the grid's edge), and all coefficients are kept (4 GiB).
+constexpr int kMostFunctions = 512;
+constexpr double kMostCoeffs = 1 << 30;
+
 // The quadrature of all rows of S.
 struct Nodes {
     std::vector<ApertureRow> rows;
@@ -131,38 +136,41 @@ class RowIntegrator {
         }
     }
 
+    // Adds column q of the row's nodes, each its texel's `share`, to mean_ and density_sum_.
+    void add_node(glm::dvec2 u_m, double s_y_m, std::size_t q, double share) {
+        const double inverse_square = 1.0 / (planes_.delta_m * planes_.delta_m);
+        const double t_y_square = (s_y_m - u_m.y) * (s_y_m - u_m.y) * inverse_square;
+        const bool is_irradiance = planes_.weighting == Weighting::Irradiance;
+        const std::size_t count = s_x_m_.size();
+        for (std::size_t i = 0; i < width_; ++i) {
+            const std::size_t k = q * width_ + i;
+            const double t_x_m = s_x_m_[k] - u_m.x;
+            const double secant = 1.0 + t_x_m * t_x_m * inverse_square + t_y_square;
+            const double density = share * inverse_square / (secant * secant);
+            factor_[i] = is_irradiance ? density : share;
+            luminance_[i] = kLuminanceRgb[0] * rgb_[k] + kLuminanceRgb[1] * rgb_[count + k] +
+                            kLuminanceRgb[2] * rgb_[2 * count + k];
+            density_sum_[i] += density * luminance_[i];
+        }
+        for (std::size_t channel = 0; channel < channels_; ++channel) {
+            const double* const value =
+                channels_ == 1 ? luminance_.data() : &rgb_[channel * count + q * width_];
+            for (std::size_t i = 0; i < width_; ++i) {
+                mean_[channel * width_ + i] += factor_[i] * value[i];
+            }
+        }
+    }
+
     // mean_[channel][i]: the texel's mean of f(u); adds the texels' flux.
     void average_texels(glm::dvec2 u_m, int j, double weight_m2, RowData& data) {
         std::fill(mean_.begin(), mean_.end(), 0.0);
         const glm::dvec2 texel_m = planes_.texel_m();
-        const double inverse_square = 1.0 / (planes_.delta_m * planes_.delta_m);
-        const std::size_t per_texel = nodes_.in_texel.size(), count = s_x_m_.size();
-        const bool is_irradiance = planes_.weighting == Weighting::Irradiance;
         std::fill(density_sum_.begin(), density_sum_.end(), 0.0);
         for (const Node& in_texel : nodes_.in_texel) {
             const double s_y_m = planes_.s_min_m.y + (j + in_texel.at_m) * texel_m.y;
             source_.radiance_row(u_m, s_y_m, s_x_m_, rgb_);
-            const double t_y_square = (s_y_m - u_m.y) * (s_y_m - u_m.y) * inverse_square;
-            for (std::size_t q = 0; q < per_texel; ++q) {
-                const double share = in_texel.weight_m * nodes_.in_texel[q].weight_m;
-                for (std::size_t i = 0; i < width_; ++i) {
-                    const std::size_t k = q * width_ + i;
-                    const double t_x_m = s_x_m_[k] - u_m.x;
-                    const double secant = 1.0 + t_x_m * t_x_m * inverse_square + t_y_square;
-                    const double density = share * inverse_square / (secant * secant);
-                    factor_[i] = is_irradiance ? density : share;
-                    luminance_[i] = kLuminanceRgb[0] * rgb_[k] +
-                                    kLuminanceRgb[1] * rgb_[count + k] +
-                                    kLuminanceRgb[2] * rgb_[2 * count + k];
-                    density_sum_[i] += density * luminance_[i];
-                }
-                for (std::size_t channel = 0; channel < channels_; ++channel) {
-                    const double* const value =
-                        channels_ == 1 ? luminance_.data() : &rgb_[channel * count + q * width_];
-                    for (std::size_t i = 0; i < width_; ++i) {
-                        mean_[channel * width_ + i] += factor_[i] * value[i];
-                    }
-                }
+            for (std::size_t q = 0; q < nodes_.in_texel.size(); ++q) {
+                add_node(u_m, s_y_m, q, in_texel.weight_m * nodes_.in_texel[q].weight_m);
             }
         }
         const double row_flux = std::accumulate(density_sum_.begin(), density_sum_.end(), 0.0);
@@ -200,12 +208,17 @@ void check_planes(const Slab& planes, const ProjectOptions& options) {
         }
     };
     require(planes.delta_m > 0.0, "delta_m", "> 0");
-    require(planes.grid.x > 0 && planes.grid.y > 0, "grid", "at least 1 x 1");
+    require(planes.grid.x > 0 && planes.grid.y > 0 &&
+                std::max(planes.grid.x, planes.grid.y) <= kMostFunctions,
+            "grid", "1 x 1 ... 512 x 512");
     require(planes.texels.x > 0 && planes.texels.y > 0, "texels", "at least 1 x 1");
     require(planes.pitch_m.x > 0.0 && planes.pitch_m.y > 0.0, "pitch_m", "> 0");
     require(planes.s_max_m.x > planes.s_min_m.x && planes.s_max_m.y > planes.s_min_m.y, "s_max_m",
             "above s_min_m");
     require(planes.channels == 1 || planes.channels == 3, "channels", "1 or 3");
+    const glm::dvec2 image_texels = glm::dvec2(planes.grid) * glm::dvec2(planes.texels);
+    require(planes.channels * image_texels.x * image_texels.y <= kMostCoeffs, "grid and texels",
+            "at most 2^30 coefficients");
     require(options.refine >= 1 && options.refine <= 8, "refine", "1 ... 8");
 }
 

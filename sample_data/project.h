@@ -50,7 +50,8 @@ struct Projection {
 ///
 /// In      source; planes: a slab without coefficients.
 /// Out     slab with coefficients; channels: 3 or 1 (luminance).
-/// Throws  Error if the planes are not usable.
+/// Throws  Error if the planes are not usable: also a grid above 512 along an axis, or above 2^30
+/// coefficients.
 /// Cost    O(texels x lens nodes); 11 x 9 x 256 x 256 RGB: seconds (README.md). Parallel over rows
 /// of S (TBB).
 Projection project(const Source& source, const Slab& planes, const ProjectOptions& options);

@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
     # tools
-    ca-certificates ccache clang-format-14 clang-tidy-14 cmake g++ git ninja-build pkg-config python3
+    ca-certificates ccache clang-format-14 clang-tidy-14 cmake g++ git glslang-tools ninja-build python3
     # libraries
     libbenchmark-dev libcli11-dev libembree-dev libfmt-dev libglm-dev libgmock-dev libgtest-dev libhwy-dev
     libopenexr-dev libpng-dev libtbb-dev libtinygltf-dev libxxhash-dev nlohmann-json3-dev

@@ -8,8 +8,12 @@
 
 namespace nearfield {
 
-/// A file that appears under its name whole or not at all: written beside it under a temporary
-/// name, renamed by commit(), removed when destroyed before. Every writer goes through it.
+/// A file that appears under its name whole or not at all. Every writer goes through it.
+///
+/// Until commit() the file has no name (Linux' O_TMPFILE), so that nothing is left of it however
+/// the program ends, kill -9 included. Where a file of that name exists, commit() links the new one
+/// under a hidden name beside it and renames it over the old one at once. File systems that know no
+/// unnamed files (NFS, FAT) get the hidden name from the start, which only the destructor removes.
 ///
 /// Throws Error with path and the system's reason (no such folder, disk full...).
 class AtomicFile {
@@ -26,7 +30,7 @@ class AtomicFile {
     void commit();
 
   private:
-    std::string path_, temporary_path_;
+    std::string path_, temporary_path_;  // temporary_path_ is empty while the file has no name
     int descriptor_ = -1;
 };
 

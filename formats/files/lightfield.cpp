@@ -3,6 +3,7 @@
 
 #include "formats/files/error.h"
 #include "formats/files/exr_file.h"
+#include "formats/files/large_array.h"
 #include "formats/files/lightfield_parts.h"
 #include "formats/files/metadata.h"
 
@@ -135,7 +136,7 @@ Description read_lightfield_parts(exr::Reader& reader, const std::string& path) 
             Slab& slab = lightfield.slabs[k];
             const auto take = [&](const char* table, std::vector<float>& values) {
                 if (is_reading)
-                    values.resize(slab.image_offset(slab.channels, 0));
+                    resize_large(values, slab.image_offset(slab.channels, 0));
                 const exr::Atlas<float> atlas =
                     image_atlas(part_name(k, table), slab, slab.texels, values.data());
                 if (is_reading)

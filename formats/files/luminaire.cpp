@@ -2,6 +2,7 @@
 #include "formats/files/luminaire.h"
 
 #include "formats/files/error.h"
+#include "formats/files/large_array.h"
 #include "formats/files/lightfield_parts.h"
 #include "formats/files/metadata.h"
 
@@ -56,12 +57,12 @@ void resize(const Slab& slab, SlabTables& tables) {
     const std::size_t images = area(slab.grid), corners = images * area(slab.texels + 1);
     tables.total.resize(images);
     tables.median_s_m.resize(images);
-    tables.sat_hi.resize(corners);
-    tables.sat_lo.resize(corners);
+    resize_large(tables.sat_hi, corners);
+    resize_large(tables.sat_lo, corners);
     tables.marginal_cdf.resize(images * area({slab.texels.x + 1, 1}));
-    tables.conditional_cdf.resize(images * area({slab.texels.x, slab.texels.y + 1}));
+    resize_large(tables.conditional_cdf, images * area({slab.texels.x, slab.texels.y + 1}));
     for (MipLevel& mip : tables.mips)
-        mip.coeffs.resize(mip_value_count(slab, mip.texels));
+        resize_large(mip.coeffs, mip_value_count(slab, mip.texels));
     tables.cell_reference_s_m.resize(area(tables.cells));
     tables.cell_total.resize(area(tables.cells));
 }

@@ -51,8 +51,8 @@ void write_luminaire(const Luminaire& luminaire,
                      const std::optional<RunRecord>& run,
                      const std::string& path);
 
-/// Reads everything, tables included. To render, read_lightfield is the faster half: building
-/// tables beats reading them (figures in docs/formats.md).
+/// Reads everything, tables included. To render, read_lightfield is the faster half (figures in
+/// docs/formats.md).
 Luminaire read_luminaire(const std::string& path);
 
 }  // namespace nearfield

@@ -12,6 +12,7 @@ namespace nearfield {
 namespace {
 
 // Beyond these a file cannot be right, and sizes computed from them fit in 64 bits.
+constexpr double kMostCoefficients = 0x1p40;  // 4 TiB of floats
 constexpr int kMaxExtent = 1 << 20;
 constexpr int kMaxSlabs = 1024;
 constexpr int kMaxProfileCells = 1024;
@@ -123,10 +124,6 @@ Slab parse_slab(const JsonField& field) {
     return slab;
 }
 
-bool is_finite(glm::dvec2 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
-}
-
 std::string text(glm::dvec2 v) {
     return fmt::format("({}, {})", v.x, v.y);
 }
@@ -145,6 +142,40 @@ void check_rotation(const glm::dmat3& rotation, const std::string& where) {
 
 }  // namespace
 
+namespace {
+
+// Lengths of any lamp: beyond these, products of lengths leave the range of float.
+constexpr double kLeastLengthM = 1e-9, kGreatestLengthM = 1e9;
+
+bool is_length(double value) {
+    return value >= kLeastLengthM && value <= kGreatestLengthM;
+}
+
+bool is_place(glm::dvec2 value) {
+    return std::abs(value.x) <= kGreatestLengthM && std::abs(value.y) <= kGreatestLengthM;
+}
+
+// phi >= 0 (but for rounding) at the ends and the vertex of every cell, and somewhere > 0: samplers
+// and fluxes rely on it.
+bool is_density(const Profile& profile) {
+    constexpr double kRounding = 1e-9;
+    const auto n = static_cast<double>(profile.cells.size());
+    double least = 0.0, greatest = 0.0;
+    for (std::size_t c = 0; c < profile.cells.size(); ++c) {
+        const auto& [a0, a1, a2] = profile.cells[c];
+        const double lo = static_cast<double>(c) - 0.5 * n, hi = lo + 1.0;
+        const double vertex = a2 != 0.0 ? std::clamp(-0.5 * a1 / a2, lo, hi) : lo;
+        for (const double x : {lo, hi, vertex}) {
+            const double phi = a0 + x * (a1 + x * a2);
+            least = std::min(least, phi);
+            greatest = std::max(greatest, phi);
+        }
+    }
+    return greatest > 0.0 && least >= -kRounding * greatest;
+}
+
+}  // namespace
+
 void check_geometry(const Slab& slab, const std::string& where) {
     const auto require = [&](bool ok, const char* field, const std::string& expected,
                              const std::string& got) {
@@ -152,18 +183,20 @@ void check_geometry(const Slab& slab, const std::string& where) {
             throw Error{"bad slab", where + "." + field, expected, got};
     };
     const glm::dvec3& t = slab.luminaire_from_slab.translation_m;
-    require(std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z),
-            "luminaire_from_slab.translation_m", "finite numbers",
-            fmt::format("({}, {}, {})", t.x, t.y, t.z));
+    require(is_place({t.x, t.y}) && is_place({t.z, 0.0}), "luminaire_from_slab.translation_m",
+            "numbers from -1e9 to 1e9", fmt::format("({}, {}, {})", t.x, t.y, t.z));
     check_rotation(slab.luminaire_from_slab.rotation, where);
-    require(std::isfinite(slab.delta_m) && slab.delta_m > 0, "delta_m", "a finite number > 0",
+    require(is_length(slab.delta_m), "delta_m", "a number from 1e-9 to 1e9",
             fmt::format("{}", slab.delta_m));
-    require(is_finite(slab.pitch_m) && slab.pitch_m.x > 0 && slab.pitch_m.y > 0, "pitch_m",
-            "finite numbers > 0", text(slab.pitch_m));
-    require(is_finite(slab.u_center_m), "u_center_m", "finite numbers", text(slab.u_center_m));
-    require(is_finite(slab.s_min_m) && is_finite(slab.s_max_m) && slab.s_max_m.x > slab.s_min_m.x &&
-                slab.s_max_m.y > slab.s_min_m.y,
-            "s_max_m", "finite numbers greater than s_min_m " + text(slab.s_min_m),
+    require(is_length(slab.pitch_m.x) && is_length(slab.pitch_m.y), "pitch_m",
+            "numbers from 1e-9 to 1e9", text(slab.pitch_m));
+    require(is_place(slab.u_center_m), "u_center_m", "numbers from -1e9 to 1e9",
+            text(slab.u_center_m));
+    const glm::dvec2 extent = slab.s_max_m - slab.s_min_m;
+    require(is_place(slab.s_min_m) && is_place(slab.s_max_m) && is_length(extent.x) &&
+                is_length(extent.y),
+            "s_max_m",
+            "numbers up to 1e9, by 1e-9 or more greater than s_min_m " + text(slab.s_min_m),
             text(slab.s_max_m));
     for (const auto& [size, field] : {std::pair{slab.grid, "grid"}, {slab.texels, "texels"}})
         require(std::min(size.x, size.y) >= 1 && std::max(size.x, size.y) <= kMaxExtent, field,
@@ -176,6 +209,13 @@ void check_geometry(const Slab& slab, const std::string& where) {
     for (const std::array<double, 3>& cell : slab.profile.cells)
         for (const double a : cell)
             require(std::isfinite(a), "profile_cells", "finite numbers", fmt::format("{}", a));
+    require(is_density(slab.profile), "profile_cells",
+            "a profile >= 0 everywhere and > 0 somewhere", "one that is not");
+    const double coefficients = static_cast<double>(slab.grid.x) * slab.grid.y * slab.texels.x *
+                                slab.texels.y * slab.channels;
+    require(coefficients <= kMostCoefficients, "texels",
+            fmt::format("at most {:g} coefficients in all", kMostCoefficients),
+            fmt::format("{:g}", coefficients));
 }
 
 std::string describe(const LightField& lightfield, const FileKind& kind, bool has_tables) {

@@ -29,6 +29,9 @@ double support_integral_m2(const Slab& slab) {
     return square(integral(slab.profile)) * slab.pitch_m.x * slab.pitch_m.y;
 }
 
+// Most parts into which quadratures split a length: beyond, a slab is no lamp, and time is bounded.
+constexpr double kMostParts = 1e4;
+
 // Nodes of a quadrature rule along one axis, relative to a center.
 struct Nodes {
     std::vector<double> offset_m, weight_m;
@@ -39,7 +42,7 @@ void append_nodes(Nodes& nodes, double lo_m, double hi_m, double widest_m) {
     constexpr std::array<double, 3> kNode = {-0.7745966692414834, 0.0, 0.7745966692414834};
     constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
     const int parts =
-        std::max(1, static_cast<int>(std::ceil(std::min((hi_m - lo_m) / widest_m, 1e4))));
+        std::max(1, static_cast<int>(std::ceil(std::min((hi_m - lo_m) / widest_m, kMostParts))));
     const double step = (hi_m - lo_m) / parts;
     for (int k = 0; k < parts; ++k)
         for (std::size_t q = 0; q < kNode.size(); ++q) {
@@ -77,8 +80,9 @@ class TexelFlux {
             return;
         for (int axis = 0; axis < 2; ++axis) {
             u_[axis] = basis_nodes(slab, axis, slab.delta_m / 4.0);
-            parts_[axis] = std::clamp(
-                static_cast<int>(std::ceil(16.0 * texel[axis] / slab.delta_m)), 1, 10000);
+            // Clamped before the conversion: a texel may be any multiple of delta.
+            parts_[axis] = static_cast<int>(
+                std::clamp(std::ceil(16.0 * texel[axis] / slab.delta_m), 1.0, kMostParts));
         }
         part_m_ = texel / glm::dvec2(parts_);
     }

@@ -10,7 +10,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace nearfield::model {
@@ -36,26 +38,32 @@ std::vector<View>& views_of_thread(std::size_t count) {
     return views;
 }
 
-bool plane_cuts(const FloatWindows& x, const FloatWindows& y, glm::vec3 n) {
+// How the receiver's plane lies to everything that its windows see.
+enum class Facing { Towards, Cut, Away };
+
+// Least and largest tangent of all windows along one axis.
+glm::vec2 bounds(const FloatWindows& windows) {
+    glm::vec2 range(std::numeric_limits<float>::infinity(),
+                    -std::numeric_limits<float>::infinity());
+    for (const FloatWindow& window : windows.of_basis)
+        if (window.range.count > 0)
+            range = {std::min(range.x, window.t_lo), std::max(range.y, window.t_hi)};
+    return range;
+}
+
+Facing facing(const FloatWindows& x_windows, const FloatWindows& y_windows, glm::vec3 n) {
     // Rounding of the windows' ends must not hide a cut: what is nearly cut is treated as cut.
     constexpr float kMargin = 1e-5F;
-    float x_lo = 0.0F, x_hi = 0.0F, y_lo = 0.0F, y_hi = 0.0F;
-    const auto bounds = [](const FloatWindows& windows, float& lo, float& hi) {
-        bool any = false;
-        for (const FloatWindow& window : windows.of_basis) {
-            if (window.range.count == 0)
-                continue;
-            lo = any ? std::min(lo, window.t_lo) : window.t_lo;
-            hi = any ? std::max(hi, window.t_hi) : window.t_hi;
-            any = true;
-        }
-    };
-    bounds(x, x_lo, x_hi);
-    bounds(y, y_lo, y_hi);
-    const float least = std::min(n.x * x_lo, n.x * x_hi) + std::min(n.y * y_lo, n.y * y_hi) - n.z;
-    const float scale =
-        1.0F + std::max(std::abs(x_lo), std::abs(x_hi)) + std::max(std::abs(y_lo), std::abs(y_hi));
-    return !(least > kMargin * scale);
+    const glm::vec2 x = bounds(x_windows), y = bounds(y_windows);
+    if (!(x.x <= x.y && y.x <= y.y))
+        return Facing::Away;  // sees nothing of S
+    const float margin = kMargin * (1.0F + std::max(std::abs(x.x), std::abs(x.y)) +
+                                    std::max(std::abs(y.x), std::abs(y.y)));
+    const float least = std::min(n.x * x.x, n.x * x.y) + std::min(n.y * y.x, n.y * y.y) - n.z;
+    const float largest = std::max(n.x * x.x, n.x * x.y) + std::max(n.y * y.x, n.y * y.y) - n.z;
+    if (least > margin)
+        return Facing::Towards;
+    return largest < -margin ? Facing::Away : Facing::Cut;
 }
 
 float luminance(glm::vec3 rgb) {
@@ -117,14 +125,18 @@ const float* first_texel(const PreparedSlab& prepared, int channel, int m, const
            static_cast<std::size_t>(part.x.first);
 }
 
-// Sum of one image and channel with irradiance weighting: p = n_x X1 - n_z X0, q = n_y X0.
-float image_sum(
-    const PreparedSlab& prepared, int channel, int m, const LitPart& part, const View& view) {
-    return row_sums(first_texel(prepared, channel, m, part),
+using Sums = std::array<float, 3>;  // of the channels; 0 where there is none
+
+// One image with irradiance weighting: p = n_x X1 - n_z X0, q = n_y X0.
+Sums image_sums(const PreparedSlab& prepared, int m, const LitPart& part, const View& view) {
+    std::array<const float*, 3> images{};
+    for (int c = 0; c < prepared.slab.channels; ++c)
+        images[static_cast<std::size_t>(c)] = first_texel(prepared, c, m, part);
+    return row_sums(images, prepared.slab.channels,
                     static_cast<std::size_t>(prepared.slab.texels.x),
-                    static_cast<std::size_t>(part.y.count), static_cast<std::size_t>(part.x.count),
-                    view.p.data() + part.x_at, view.q.data() + part.x_at,
-                    view.y.m0.data() + part.y_at, view.y.m1.data() + part.y_at);
+                    {static_cast<std::size_t>(part.y.count), static_cast<std::size_t>(part.x.count),
+                     view.p.data() + part.x_at, view.q.data() + part.x_at,
+                     view.y.m0.data() + part.y_at, view.y.m1.data() + part.y_at});
 }
 
 // Sum of one image and channel with radiance weighting: the kernel at every texel's centroid.
@@ -153,6 +165,16 @@ float image_sum_radiance(
     return sum;
 }
 
+Sums image_sums_radiance(const PreparedSlab& prepared,
+                         int m,
+                         const LitPart& part,
+                         const View& view) {
+    Sums sums{};
+    for (int c = 0; c < prepared.slab.channels; ++c)
+        sums[static_cast<std::size_t>(c)] = image_sum_radiance(prepared, c, m, part, view);
+    return sums;
+}
+
 // The weights along x that depend on the normal (irradiance weighting: p and q; radiance: centroids
 // in p).
 void weigh_x(View& s, bool radiance_weighting) {
@@ -176,37 +198,47 @@ void look(const PreparedSlab& prepared, const ReceiverF& receiver, View& view) {
     const bool radiance_weighting = slab.weighting == Weighting::Radiance;
     view.normal = receiver.normal;
     view.by_pieces = false;
-    if (!(p.z > -static_cast<float>(slab.delta_m))) {
+    const auto see_nothing = [&] {
         view.x.of_basis.assign(static_cast<std::size_t>(slab.grid.x), {});
         view.y.of_basis.assign(static_cast<std::size_t>(slab.grid.y), {});
-        return;
-    }
+    };
+    if (!(p.z > -static_cast<float>(slab.delta_m)))
+        return see_nothing();
     fill(view.x, slab, 0, p.x, p.z);
     fill(view.y, slab, 1, p.y, p.z);
+    const Facing towards = facing(view.x, view.y, view.normal);
+    if (towards == Facing::Away)
+        return see_nothing();
     const bool kernel_varies =
         radiance_weighting &&
         std::max(view.x.widest_texel_t, view.y.widest_texel_t) > kWidestCentroidTexel;
-    view.by_pieces = kernel_varies || plane_cuts(view.x, view.y, view.normal);
+    view.by_pieces = kernel_varies || towards == Facing::Cut;
     if (!view.by_pieces)
         weigh_x(view, radiance_weighting);
+}
+
+// Whether any of a run of coefficients is not zero: no branch inside, so that it runs at the speed
+// of memory.
+bool any_light(const float* coeffs, int count) {
+    float sum = 0.0F;
+#pragma omp simd reduction(+ : sum)
+    for (int k = 0; k < count; ++k)
+        sum += coeffs[k];
+    return sum > 0.0F;
 }
 
 // From the borders inwards, so that a bright image costs next to nothing.
 glm::ivec4 lit_texels(const Slab& slab, int m) {
     const int w = slab.texels.x, h = slab.texels.y;
-    const auto is_lit = [&](int i, int j) {
-        bool lit = false;
-        for (int c = 0; c < slab.channels; ++c)
-            lit = lit || slab.coeffs[slab.image_offset(c, m) +
-                                     static_cast<std::size_t>(j) * static_cast<std::size_t>(w) +
-                                     static_cast<std::size_t>(i)] > 0.0F;
-        return lit;
+    const auto row = [&](int c, int j) {
+        return slab.coeffs.data() + slab.image_offset(c, m) +
+               static_cast<std::size_t>(j) * static_cast<std::size_t>(w);
     };
     const auto row_is_lit = [&](int j) {
-        for (int i = 0; i < w; ++i)
-            if (is_lit(i, j))
-                return true;
-        return false;
+        bool lit = false;
+        for (int c = 0; c < slab.channels; ++c)
+            lit = lit || any_light(row(c, j), w);
+        return lit;
     };
     int bottom = 0, top = h;
     while (bottom < h && !row_is_lit(bottom))
@@ -214,14 +246,19 @@ glm::ivec4 lit_texels(const Slab& slab, int m) {
     while (top > bottom && !row_is_lit(top - 1))
         --top;
     int left = w, right = 0;
-    for (int j = bottom; j < top; ++j) {
-        for (int i = 0; i < left; ++i)
-            if (is_lit(i, j))
-                left = i;
-        for (int i = w; i > right; --i)
-            if (is_lit(i - 1, j))
-                right = i;
-    }
+    for (int j = bottom; j < top; ++j)
+        for (int c = 0; c < slab.channels; ++c) {
+            const float* texel = row(c, j);
+            if (left > 0 && any_light(texel, left))
+                left = static_cast<int>(
+                    std::find_if(texel, texel + left, [](float v) { return v > 0.0F; }) - texel);
+            if (right < w && any_light(texel + right, w - right)) {
+                int last = w - 1;
+                while (!(texel[last] > 0.0F))
+                    --last;
+                right = last + 1;
+            }
+        }
     return right > left ? glm::ivec4(left, bottom, right, top) : glm::ivec4(0);
 }
 
@@ -264,33 +301,32 @@ std::uint64_t irradiance(const PreparedSlab& prepared,
     // first-level cache.
     const float scale = radiance_weighting ? 1.0F : static_cast<float>(slab.delta_m * slab.delta_m);
     std::uint64_t multiply_adds = 0;
-    for (std::size_t m = 0; m < images; ++m)
+    for (std::size_t m = 0; m < images; ++m) {
+        const std::size_t column = m % static_cast<std::size_t>(slab.grid.x);
+        const std::size_t row = m / static_cast<std::size_t>(slab.grid.x);
         for (std::size_t k = 0; k < receivers.size(); ++k) {
             const View& view = views[k];
             if (view.by_pieces)
                 continue;
-            const FloatWindow& x = view.x.of_basis[m % static_cast<std::size_t>(slab.grid.x)];
-            const FloatWindow& y = view.y.of_basis[m / static_cast<std::size_t>(slab.grid.x)];
-            const LitPart part = lit_part(x, y, prepared.lit[m]);
+            const LitPart part =
+                lit_part(view.x.of_basis[column], view.y.of_basis[row], prepared.lit[m]);
             if (part.x.count == 0 || part.y.count == 0)
                 continue;
             multiply_adds += 2 * static_cast<std::uint64_t>(slab.channels) *
                              static_cast<std::uint64_t>(part.x.count) *
                              static_cast<std::uint64_t>(part.y.count);
-            glm::vec3 sums(0.0F);
-            for (int c = 0; c < slab.channels; ++c) {
-                const auto image = static_cast<int>(m);
-                const float sum = radiance_weighting
-                                      ? image_sum_radiance(prepared, c, image, part, view)
-                                      : image_sum(prepared, c, image, part, view);
-                sums[c] = std::max(sum, 0.0F) * scale;
-            }
-            if (slab.channels == 1)
-                sums = glm::vec3(sums.x);
+            const auto image = static_cast<int>(m);
+            const auto [r, g, b] = radiance_weighting
+                                       ? image_sums_radiance(prepared, image, part, view)
+                                       : image_sums(prepared, image, part, view);
+            const glm::vec3 sums =
+                glm::max(slab.channels == 1 ? glm::vec3(r) : glm::vec3(r, g, b), glm::vec3(0.0F)) *
+                scale;
             results[k] += sums;
             if (!image_y.empty())
                 image_y[k * images + m] = luminance(sums);
         }
+    }
     return multiply_adds;
 }
 

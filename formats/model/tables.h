@@ -12,7 +12,9 @@ SlabTables build_tables(const Slab& slab);
 /// The light field, checked, with tables for every slab unless `lean`.
 Luminaire pack(LightField lightfield, bool lean);
 
-/// How many stored tables' values differ from those that C_m gives, by more than float rounding.
+/// How many stored tables' values differ from those that C_m gives, by more than rounding: 1e-6 of
+/// the value (positions: of S's extent), 2e-14 of a summed-area table's hi + lo. `worst_relative`
+/// is relative to the same; 1 where C_m gives zero.
 struct TableCheck {
     std::size_t values = 0, different = 0;
     double worst_relative = 0;

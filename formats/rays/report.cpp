@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace nearfield::rays {
@@ -38,21 +37,6 @@ void scale_to(RaySet& set, double total) {
     for (Ray& ray : set.rays)
         ray.flux = static_cast<float>(ray.flux * scale);
     set.notes.push_back(fmt::format("scaled to {:.6g} {} as asked", total, unit(set)));
-}
-
-glm::ivec2 parse_size(const std::string& text, const std::string& option) {
-    glm::ivec2 result{0};
-    const char* end = text.data() + text.size();
-    const auto x = std::from_chars(text.data(), end, result.x);
-    bool good = x.ec == std::errc() && x.ptr != end && *x.ptr == 'x';
-    if (good) {
-        const auto y = std::from_chars(x.ptr + 1, end, result.y);
-        good = y.ec == std::errc() && y.ptr == end;
-    }
-    // 65536: no image of a light field is larger, and products stay within 32 bits.
-    if (!good || result.x < 1 || result.y < 1 || result.x > 65536 || result.y > 65536)
-        throw Error{"bad size", option, "WxH, as in 13x11", "'" + text + "'"};
-    return result;
 }
 
 std::string summary(const RaySet& set, const ConvertReport& report) {

@@ -13,9 +13,6 @@ namespace nearfield::rays {
 /// Scales the rays to a total flux; a note says so. Throws Error unless flux is finite and > 0.
 void scale_to(RaySet& set, double flux);
 
-/// "17x11" as a size. Throws Error naming the option.
-glm::ivec2 parse_size(const std::string& text, const std::string& option);
-
 /// A few lines: rays, flux, what was dropped, each slab's planes and resolution and why, expected
 /// error.
 std::string summary(const RaySet& set, const ConvertReport& report);

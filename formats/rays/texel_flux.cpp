@@ -17,7 +17,7 @@ constexpr std::array kTexelsAcross = {8,  12,  16,  20,  24,  28,  32,  40,  48,
 constexpr std::array kKernels = {0.0, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0};
 // Fewer rays than this a texel, averaged over the rectangle, are not worth their coefficients: the
 // kernel would only merge the texels again, and some measured files carry a raster of start
-// positions that finer texels would show. texels again.
+// positions that finer texels would show.
 constexpr double kLeastRaysPerTexel = 8.0;
 
 // Gaussian weights at 0, 1, ... texels; each source spreads a total of one.

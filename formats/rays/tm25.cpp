@@ -2,6 +2,7 @@
 #include "formats/rays/tm25.h"
 
 #include "formats/files/error.h"
+#include "formats/rays/byte_reader.h"
 #include "formats/rays/color.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 namespace nearfield::rays {
@@ -23,58 +23,6 @@ constexpr std::uint64_t kTablesByte = 36288;  // after nine text fields of 4000 
 constexpr std::uint64_t kColumnNameBytes = 512;  // section 4.7.5
 constexpr std::int32_t kVersion = 2013;
 constexpr std::size_t kRaysPerChunk = 65536;
-
-// The file, read in order of rising offsets, with its size known before anything is allocated.
-class Reader {
-  public:
-    explicit Reader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
-        std::error_code error;
-        size_ = std::filesystem::is_regular_file(path, error)
-                    ? static_cast<std::uint64_t>(std::filesystem::file_size(path, error))
-                    : 0;
-        if (!stream_ || error)
-            throw Error{"cannot open ray file", path, "a readable file"};
-    }
-
-    std::string at(std::uint64_t byte) const { return fmt::format("{}, byte {}", path_, byte); }
-    std::uint64_t position() const { return position_; }
-    std::uint64_t remaining() const { return size_ - position_; }
-    std::uint64_t size() const { return size_; }
-
-    void seek(std::uint64_t byte) {
-        need(byte > position_ ? byte - position_ : 0);
-        stream_.seekg(static_cast<std::streamoff>(byte));
-        position_ = byte;
-    }
-
-    void read(void* destination, std::uint64_t bytes) {
-        need(bytes);
-        stream_.read(static_cast<char*>(destination), static_cast<std::streamsize>(bytes));
-        if (!stream_)
-            throw Error{"cannot read ray file", at(position_)};
-        position_ += bytes;
-    }
-
-    template <typename T>
-    T read() {
-        T value{};
-        read(&value, sizeof value);
-        return value;
-    }
-
-    // The file must hold `bytes` more.
-    void need(std::uint64_t bytes) const {
-        if (bytes > remaining())
-            throw Error{"ray file is truncated", at(size_),
-                        fmt::format("{} more bytes after byte {}", bytes, position_),
-                        fmt::format("{}", remaining())};
-    }
-
-  private:
-    std::string path_;
-    std::ifstream stream_;
-    std::uint64_t size_ = 0, position_ = 0;
-};
 
 struct SpectralTable {
     std::vector<float> wavelength_nm, weight;  // weight: radiant power per nm, any scale
@@ -116,7 +64,7 @@ struct Columns {
     }
 };
 
-void refuse_other_formats(const Reader& file,
+void refuse_other_formats(const ByteReader& file,
                           const std::array<char, 4>& magic,
                           const std::string& path) {
     const auto not_yet = [&](const char* program) {
@@ -138,7 +86,7 @@ void refuse_other_formats(const Reader& file,
         not_yet("Speos or Zemax");
 }
 
-std::int32_t read_flag(Reader& file, const char* name) {
+std::int32_t read_flag(ByteReader& file, const char* name) {
     const std::uint64_t byte = file.position();
     const auto value = file.read<std::int32_t>();
     if (value != 0 && value != 1)
@@ -147,7 +95,7 @@ std::int32_t read_flag(Reader& file, const char* name) {
     return value;
 }
 
-std::int32_t read_count(Reader& file, const char* name, std::int32_t least) {
+std::int32_t read_count(ByteReader& file, const char* name, std::int32_t least) {
     const std::uint64_t byte = file.position();
     const auto value = file.read<std::int32_t>();
     if (value < least)
@@ -156,7 +104,7 @@ std::int32_t read_count(Reader& file, const char* name, std::int32_t least) {
     return value;
 }
 
-void read_flags(Reader& file, Header& header) {
+void read_flags(ByteReader& file, Header& header) {
     file.seek(kFlagsByte);
     if (read_flag(file, "position") + read_flag(file, "direction") != 2)
         throw Error{"ray file without positions or directions", file.at(kFlagsByte), "flags 1, 1"};
@@ -171,7 +119,7 @@ void read_flags(Reader& file, Header& header) {
                     "the radiant or the luminous flux flag set"};
 }
 
-void read_tables(Reader& file, Header& header, std::int32_t table_count) {
+void read_tables(ByteReader& file, Header& header, std::int32_t table_count) {
     file.seek(kTablesByte);
     for (std::int32_t t = 0; t < table_count; ++t) {
         const auto pairs = static_cast<std::uint64_t>(read_count(file, "spectral table's size", 1));
@@ -195,7 +143,7 @@ void read_tables(Reader& file, Header& header, std::int32_t table_count) {
     file.seek(kTablesByte + (file.position() - kTablesByte + 31) / 32 * 32);
 }
 
-void check_spectral_data(const Reader& file, const Header& header) {
+void check_spectral_data(const ByteReader& file, const Header& header) {
     const auto refuse = [&](const char* expected) {
         throw Error{"contradictory spectral data in ray file", file.at(60), expected,
                     fmt::format("identifier {}", header.spectral_data)};
@@ -214,7 +162,7 @@ void check_spectral_data(const Reader& file, const Header& header) {
         refuse("luminous flux (Y) beside tristimulus X and Z");
 }
 
-Header read_header(Reader& file, const std::string& path) {
+Header read_header(ByteReader& file, const std::string& path) {
     const auto magic = file.read<std::array<char, 4>>();
     if (std::memcmp(magic.data(), "TM25", 4) != 0) {
         refuse_other_formats(file, magic, path);
@@ -392,7 +340,7 @@ double flux(const RaySet& set) {
 }
 
 RaySet read_tm25(const std::string& path, const ReadOptions& options) {
-    Reader file(path);
+    ByteReader file(path);
     const Header header = read_header(file, path);
     const Columns columns(header);
 

@@ -97,7 +97,9 @@ std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
     for (int row = 0; row < map.size.y; ++row) {
         for (int column = 0; column < map.size.x; ++column) {
             const glm::dvec2 at = map.lower + (glm::dvec2(column, row) + 0.5) * step;
-            const double value = map.values[static_cast<std::size_t>(row * map.size.x + column)];
+            const double value =
+                map.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.size.x) +
+                           static_cast<std::size_t>(column)];
             script += fmt::format("{:.8g} {:.8g} {:.8g}\n", at.x, at.y, std::max(value, map.low));
         }
     }

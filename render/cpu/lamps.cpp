@@ -18,12 +18,21 @@ using PreparedSlabs = std::vector<std::shared_ptr<const model::PreparedSlab>>;
 
 struct LoadedLightField {
     PreparedSlabs slabs;
+    std::shared_ptr<const LightField> measured;
     Quantity quantity = Quantity::Photometric;
 };
 
-LoadedLightField load(const std::string& path) {
+bool has_sigma(const LightField& lightfield) {
+    return lightfield.scale_sigma_rel > 0.0 ||
+           std::any_of(lightfield.slabs.begin(), lightfield.slabs.end(),
+                       [](const Slab& slab) { return !slab.sigma.empty(); });
+}
+
+LoadedLightField load(const std::string& path, bool keep_measured) {
     LightField lightfield = read_lightfield(path);
     LoadedLightField loaded;
+    if (keep_measured && has_sigma(lightfield))
+        loaded.measured = std::make_shared<const LightField>(lightfield);
     loaded.quantity = lightfield.quantity;
     for (Slab& slab : lightfield.slabs) {
         slab.sigma.clear();
@@ -31,6 +40,14 @@ LoadedLightField load(const std::string& path) {
             std::make_shared<const model::PreparedSlab>(model::prepare(std::move(slab))));
     }
     return loaded;
+}
+
+// How directions of the world turn into a frame that the luminaire's matrix scales: a rotation,
+// mirrored or not, times a scale, whose inverse without the scale is the transpose.
+glm::dmat3 rotation_from_world(const glm::dmat4& world_from_frame,
+                               const LuminaireInstance& luminaire) {
+    const double scale = std::abs(uniform_scale(luminaire.world_from_luminaire, luminaire.name));
+    return glm::transpose(glm::dmat3(world_from_frame)) / scale;
 }
 
 PlacedSlab place(std::shared_ptr<const model::PreparedSlab> prepared,
@@ -41,10 +58,7 @@ PlacedSlab place(std::shared_ptr<const model::PreparedSlab> prepared,
     luminaire_from_slab[3] = glm::dvec4(pose.translation_m, 1.0);
     placed.world_from_slab = luminaire.world_from_luminaire * luminaire_from_slab;
     placed.slab_from_world = glm::inverse(placed.world_from_slab);
-    // A rotation, mirrored or not, times a scale: the inverse of it without the scale is its
-    // transpose.
-    const double scale = std::abs(uniform_scale(luminaire.world_from_luminaire, luminaire.name));
-    placed.slab_from_world_rotation = glm::transpose(glm::dmat3(placed.world_from_slab)) / scale;
+    placed.slab_from_world_rotation = rotation_from_world(placed.world_from_slab, luminaire);
     placed.prepared = std::move(prepared);
     return placed;
 }
@@ -97,7 +111,7 @@ class MaskBits {
 
 }  // namespace
 
-Lamps load_lamps(const Scene& scene) {
+Lamps load_lamps(const Scene& scene, bool keep_measured) {
     Lamps result;
     MaskBits bits(scene);
     std::map<std::string, LoadedLightField> files;
@@ -107,7 +121,7 @@ Lamps load_lamps(const Scene& scene) {
             continue;
         auto found = files.find(luminaire.path);
         if (found == files.end())
-            found = files.emplace(luminaire.path, load(luminaire.path)).first;
+            found = files.emplace(luminaire.path, load(luminaire.path, keep_measured)).first;
         if (!result.lamps.empty() && found->second.quantity != result.quantity)
             throw Error{"cannot mix light in lumens and in watts", luminaire.path,
                         "the other luminaires' quantity", "another"};
@@ -118,6 +132,10 @@ Lamps load_lamps(const Scene& scene) {
         lamp.mask = bits.bit_of(luminaire);
         for (const auto& prepared : found->second.slabs)
             lamp.slabs.push_back(place(prepared, luminaire));
+        lamp.measured = found->second.measured;
+        lamp.luminaire_from_world = glm::inverse(luminaire.world_from_luminaire);
+        lamp.luminaire_from_world_rotation =
+            rotation_from_world(luminaire.world_from_luminaire, luminaire);
         result.lamps.push_back(std::move(lamp));
     }
     result.instance_masks = bits.masks();

@@ -2,10 +2,8 @@
 #include "render/cpu/render.h"
 
 #include "formats/files/error.h"
-#include "formats/shared/rng.glsl.h"
-#include "formats/shared/tonemap.glsl.h"
-#include "render/cpu/lamps.h"
-#include "render/cpu/tracer.h"
+#include "formats/files/provenance.h"
+#include "render/cpu/tile.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -22,7 +20,6 @@ namespace nearfield::render {
 namespace {
 
 constexpr int kMaxExtentPx = 16384;
-constexpr int kTilePx = 16;  // 256 pixels: enough work a task, few enough idle cores at the end
 
 const Camera& find_camera(const Scene& scene, const std::string& name) {
     std::string names;
@@ -39,61 +36,13 @@ glm::ivec2 complete_size(glm::ivec2 size_px, const Camera& camera) {
     constexpr double kUsualAspect = 4.0 / 3.0;
     const double aspect = camera.aspect > 0.0 ? camera.aspect : kUsualAspect;
     if (size_px.y == 0)
-        size_px.y = std::clamp(static_cast<int>(std::lround(size_px.x / aspect)), 1, kMaxExtentPx);
+        // Clamped before the conversion: an aspect may be 1e-300.
+        size_px.y = static_cast<int>(
+            std::lround(std::clamp(size_px.x / aspect, 1.0, static_cast<double>(kMaxExtentPx))));
     return size_px;
 }
 
-/// The middle of one of n x n strata of a pixel, moved within it at random if n > 1. Pixel (x, y)
-/// spans x ... x + 1.
-glm::dvec2 film_position_px(
-    glm::ivec2 pixel, int stratum, int n, std::uint32_t random_x, std::uint32_t random_y) {
-    const glm::dvec2 jitter =
-        n == 1 ? glm::dvec2(0.5)
-               : glm::dvec2(shared::unit_float(random_x), shared::unit_float(random_y));
-    return glm::dvec2(pixel) +
-           (glm::dvec2(stratum % n, stratum / n) + jitter) / static_cast<double>(n);
-}
-
-glm::dvec3 camera_ray(const Camera& camera, glm::ivec2 size_px, glm::dvec2 position_px) {
-    const double tan_half = std::tan(0.5 * camera.yfov_rad);
-    const double px =
-        2.0 * tan_half / static_cast<double>(size_px.y);  // square pixels at distance 1
-    const glm::dvec3 direction((position_px.x - 0.5 * size_px.x) * px,
-                               (0.5 * size_px.y - position_px.y) * px, -1.0);
-    // Cameras of scenes made elsewhere may carry a scale; directions do not.
-    return glm::normalize(glm::dmat3(camera.world_from_camera) * direction);
-}
-
-/// What all tiles share.
-struct Frame {
-    const Scene& scene;
-    const RenderOptions& options;
-    const Camera& camera;
-    const Lamps& lamps;
-    const Tracer& tracer;
-    Picture& picture;
-    std::vector<Reflectance> reflectances;
-    int strata = 1;  // a pixel's side
-};
-
-struct TileReport {
-    Scratch scratch;
-    double camera_s = 0;
-    std::uint64_t camera_rays = 0;
-};
-
-/// Layers in the order of make_picture.
-enum LayerIndex : std::size_t {
-    kRadiance,
-    kIrradiance,
-    kAlbedo,
-    kDepth,
-    kNormal,
-    kSigma,
-    kFirstLamp
-};
-
-Picture make_picture(const Lamps& lamps, glm::ivec2 size_px) {
+Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_measured) {
     Picture picture;
     picture.size_px = size_px;
     const std::vector<std::string> rgb = {"R", "G", "B"};
@@ -101,6 +50,8 @@ Picture make_picture(const Lamps& lamps, glm::ivec2 size_px) {
                       {"depth", {"Z"}, {}}, {"normal", {"X", "Y", "Z"}, {}}, {"sigma", {"Y"}, {}}};
     for (const Lamp& lamp : lamps.lamps)
         picture.layers.push_back({"lamp." + lamp.name, rgb, {}});
+    if (has_measured)
+        picture.layers.push_back({"sigma_measured", {"Y"}, {}});
     const std::size_t pixels =
         static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
     for (Layer& layer : picture.layers)
@@ -108,108 +59,16 @@ Picture make_picture(const Lamps& lamps, glm::ivec2 size_px) {
     return picture;
 }
 
-void add(Layer& layer, std::size_t pixel, glm::vec3 value) {
-    for (std::size_t c = 0; c < 3; ++c)
-        layer.values[3 * pixel + c] += value[static_cast<int>(c)];
-}
-
-/// One camera sample of a pixel. Returns the variance of its radiance's luminance.
-float render_sample(const Frame& frame, glm::ivec2 pixel, int stratum, TileReport& report) {
-    const std::size_t index =
-        static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(frame.picture.size_px.x) +
-        static_cast<std::size_t>(pixel.x);
-    const int samples = frame.strata * frame.strata;
-    const auto key = static_cast<std::uint32_t>(index) * static_cast<std::uint32_t>(samples) +
-                     static_cast<std::uint32_t>(stratum);
-    const double start_s = now_s();
-    const glm::uvec4 random = shared::hash4({key, ~0U, frame.options.seed, 0U});
-    const glm::dvec3 origin(frame.camera.world_from_camera[3]);
-    const glm::dvec3 direction =
-        camera_ray(frame.camera, frame.picture.size_px,
-                   film_position_px(pixel, stratum, frame.strata, random.x, random.y));
-    const std::optional<Hit> hit = frame.tracer.trace(origin, direction);
-    ++report.camera_rays;
-    report.camera_s += now_s() - start_s;
-    if (!hit)
-        return 0.0F;
-
-    const float share = 1.0F / static_cast<float>(samples);
-    const Reflectance& reflectance = frame.reflectances[static_cast<std::size_t>(hit->material)];
-    std::vector<Layer>& layers = frame.picture.layers;
-    add(layers[kAlbedo], index, reflectance.diffuse * share);
-    if (stratum == samples / 2) {  // depths and normals have no meaningful mean
-        const glm::dvec3 forward = -glm::normalize(glm::dvec3(frame.camera.world_from_camera[2]));
-        layers[kDepth].values[index] =
-            static_cast<float>(glm::dot(hit->position_world_m - origin, forward));
-        add(layers[kNormal], index, glm::vec3(hit->shading_normal));
-    }
-    float variance = 0.0F;
-    for (std::size_t lamp = 0; lamp < frame.lamps.lamps.size(); ++lamp) {
-        // Samples of one pixel share the pixel's visibility samples; 8 keep the ratio's bias small.
-        const int visibility_samples = std::max(frame.options.visibility_samples / samples,
-                                                std::min(8, frame.options.visibility_samples));
-        const ShadeQuery query{*hit,
-                               -direction,
-                               reflectance,
-                               {key, static_cast<std::uint32_t>(lamp)},
-                               frame.options.seed,
-                               visibility_samples};
-        const LampLight light = shade(frame.lamps.lamps[lamp], frame.tracer, query, report.scratch);
-        add(layers[kRadiance], index, light.radiance * share);
-        add(layers[kIrradiance], index, light.irradiance * share);
-        add(layers[kFirstLamp + lamp], index, light.radiance * share);
-        variance += light.sigma_y * light.sigma_y * share * share;
-    }
-    return variance;
-}
-
-void render_tile(const Frame& frame, glm::ivec2 first, TileReport& report) {
-    const glm::ivec2 last = glm::min(first + kTilePx, frame.picture.size_px);
-    for (int y = first.y; y < last.y; ++y)
-        for (int x = first.x; x < last.x; ++x) {
-            float variance = 0.0F;
-            for (int stratum = 0; stratum < frame.strata * frame.strata; ++stratum)
-                variance += render_sample(frame, {x, y}, stratum, report);
-            frame.picture.layers[kSigma]
-                .values[static_cast<std::size_t>(y * frame.picture.size_px.x + x)] =
-                std::sqrt(variance);
-        }
-}
-
-void summarize_sigma(const Picture& picture, RenderReport& report) {
-    constexpr float kFloor = 1e-3F;  // of the largest, as for relative RMS
-    const std::vector<float>& rgb = picture.layers[kRadiance].values;
-    const auto luminance = [&](std::size_t i) {
-        return shared::luminance709({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
-    };
-    const std::size_t pixels = rgb.size() / 3;
-    float brightest = 0.0F;
-    for (std::size_t i = 0; i < pixels; ++i)
-        brightest = std::max(brightest, luminance(i));
-    double sum = 0.0;
-    std::size_t lit = 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        if (!(luminance(i) > kFloor * brightest))
-            continue;
-        const double relative =
-            static_cast<double>(picture.layers[kSigma].values[i] / luminance(i));
-        sum += relative;
-        report.sigma_worst_rel = std::max(report.sigma_worst_rel, relative);
-        ++lit;
-    }
-    report.sigma_mean_rel = lit > 0 ? sum / static_cast<double>(lit) : 0.0;
-}
-
 /// Merges in the tiles' order, and turns time spent by all threads into shares of the wall time.
 void merge(const std::vector<TileReport>& tiles, double wall_s, RenderReport& report) {
     double spent_s = 0.0;
     for (const TileReport& tile : tiles) {
         report.camera_rays += tile.camera_rays;
-        report.shadow_rays += tile.scratch.shadow_rays;
-        report.multiply_adds += tile.scratch.multiply_adds;
+        report.shadow_rays += tile.shadow_rays;
+        report.multiply_adds += static_cast<double>(tile.multiply_adds);
         report.camera_s += tile.camera_s;
-        report.sums_s += tile.scratch.sums_s;
-        report.visibility_s += tile.scratch.visibility_s;
+        report.sums_s += tile.sums_s;
+        report.visibility_s += tile.visibility_s;
     }
     spent_s = report.camera_s + report.sums_s + report.visibility_s;
     const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;
@@ -270,7 +129,10 @@ Rendered render(const Scene& scene,
     RenderReport& report = result.report;
     const Camera& camera = find_camera(scene, options.camera);
     const double start_s = now_s();
-    const Lamps lamps = load_lamps(scene);
+    const Lamps lamps = load_lamps(scene, options.sigma_measured);
+    report.has_sigma_measured =
+        std::any_of(lamps.lamps.begin(), lamps.lamps.end(),
+                    [](const Lamp& lamp) { return lamp.measured != nullptr; });
     report.quantity = lamps.quantity;
     report.load_s = now_s() - start_s;
 
@@ -282,7 +144,8 @@ Rendered render(const Scene& scene,
     const Tracer tracer(scene, lamps.instance_masks, threads);
     report.build_s = now_s() - build_start_s;
 
-    result.picture = make_picture(lamps, complete_size(options.size_px, camera));
+    result.picture =
+        make_picture(lamps, complete_size(options.size_px, camera), report.has_sigma_measured);
     Frame frame{scene,  options,
                 camera, lamps,
                 tracer, result.picture,
@@ -294,7 +157,8 @@ Rendered render(const Scene& scene,
     tbb::task_arena arena(threads);
     arena.execute([&] { render_tiles(frame, progress, tiles); });
     merge(tiles, now_s() - tiles_start_s, report);
-    summarize_sigma(result.picture, report);
+    report.sampling =
+        summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma]);
     return result;
 }
 

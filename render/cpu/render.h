@@ -21,10 +21,23 @@ struct RenderOptions {
     int visibility_samples = 64;  // a pixel and lamp, >= 2; more: less noise in penumbrae and gloss
     std::uint32_t seed = 1;
     int threads = 0;  // 0: all cores. The picture does not depend on it
+    /// Adds the layer sigma_measured where a lamp's file holds sigmas: in double, many times
+    /// the time of a light sum.
+    bool sigma_measured = false;
 };
 
 /// Throws Error naming the option if one is out of range.
 void check(const RenderOptions& options);
+
+/// Sampling sigma of radiance Y relative to radiance Y, over lit pixels: those brighter than 1e-3
+/// of the brightest.
+struct Noise {
+    double mean_rel = 0, p95_rel = 0;  // p95: what 95 % of the lit pixels do not exceed
+    double share_above_10_percent = 0;
+};
+
+/// Of a picture's layers: radiance R, G, B and sigma Y. All 0 where nothing is lit.
+Noise summarize_noise(const Layer& radiance, const Layer& sigma);
 
 /// What a picture cost and how noisy it is. Stages' times are shares of the wall time by time spent
 /// in them.
@@ -34,9 +47,8 @@ struct RenderReport {
     int threads = 0;  // used
     std::uint64_t camera_rays = 0, shadow_rays = 0;
     double multiply_adds = 0;  // of the windowed sums
-    /// Sampling sigma of radiance Y relative to radiance Y, over lit pixels that are brighter than
-    /// 1e-3 of the brightest.
-    double sigma_mean_rel = 0, sigma_worst_rel = 0;
+    Noise sampling;
+    bool has_sigma_measured = false;  // the layer is there: it was asked for, and a file knows
 };
 
 struct Rendered {
@@ -46,6 +58,7 @@ struct Rendered {
 
 /// A report in one line for people.
 std::string summary(const RenderReport& report, glm::ivec2 size_px);
+std::string summary(const Noise& noise);
 
 /// What a picture's file says of where it comes from: options, light fields with their hashes,
 /// figures. The scene's own file is the caller's to add to the inputs, where there is one.
@@ -54,8 +67,10 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
 /// Renders the light that arrives directly from the scene's luminaires.
 ///
 /// Out     the same bits for any number of threads. Sampling noise in penumbrae and gloss alone;
-/// its sigma is a layer. Throws  Error if a camera or light field is missing or not one. Cost    a
-/// camera sample and lit lamp: one windowed sum (prepared.h) and visibility_samples shadow rays.
+///         its sigma is a layer.
+/// Throws  Error if a camera or light field is missing or not one.
+/// Cost    a camera sample and lit lamp: one windowed sum (prepared.h) and visibility_samples
+///         shadow rays.
 Rendered render(const Scene& scene,
                 const RenderOptions& options,
                 const std::function<void(double fraction)>& progress = {});

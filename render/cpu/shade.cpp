@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/files/provenance.h"
+#include "formats/model/luminaire.h"
 #include "formats/shared/brdf.glsl.h"
 #include "formats/shared/rng.glsl.h"
 #include "formats/shared/tonemap.glsl.h"
@@ -18,58 +18,6 @@ model::ReceiverF receiver_in_slab(const PlacedSlab& slab, const Hit& hit) {
             glm::vec3(slab.slab_from_world_rotation * hit.shading_normal)};
 }
 
-/// Texels within the windows of all images: what one windowed sum reads of each channel.
-double window_texels(const Slab& slab, glm::vec3 position_m) {
-    const double height = static_cast<double>(position_m.z) + slab.delta_m;
-    if (!(height > 0.0))
-        return 0.0;
-    double product = 1.0;
-    for (int axis = 0; axis < 2; ++axis) {
-        const double p = static_cast<double>(position_m[axis]);
-        const double shrink = slab.delta_m / height;
-        const double half_support =
-            0.5 * static_cast<double>(slab.profile.cells.size()) * slab.pitch_m[axis];
-        double sum = 0.0;
-        for (int i = 0; i < slab.grid[axis]; ++i) {
-            const double center = slab.basis_center_m(i, i)[axis];
-            const double a = center - half_support + (p - center + half_support) * shrink;
-            const double b = center + half_support + (p - center - half_support) * shrink;
-            const double low = std::max(std::min(a, b), slab.s_min_m[axis]);
-            const double high = std::min(std::max(a, b), slab.s_max_m[axis]);
-            sum += std::max(std::ceil((high - low) / slab.texel_m()[axis]), 0.0);
-        }
-        product *= sum;
-    }
-    return product;
-}
-
-/// Unshadowed light of all slabs, and how visibility samples are shared out among them.
-struct Sums {
-    glm::vec3 irradiance{0.0F};
-    std::vector<float> slab_y;  // sum of image_y of each slab
-    float total_y = 0.0F;
-};
-
-Sums light_sums(const Lamp& lamp, const Hit& hit, Scratch& scratch) {
-    Sums sums;
-    scratch.image_y.resize(lamp.slabs.size());
-    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
-        const model::PreparedSlab& prepared = *lamp.slabs[s].prepared;
-        std::vector<float>& image_y = scratch.image_y[s];
-        image_y.assign(static_cast<std::size_t>(prepared.slab.image_count()), 0.0F);
-        const model::ReceiverF receiver = receiver_in_slab(lamp.slabs[s], hit);
-        sums.irradiance += model::irradiance(prepared, receiver, image_y);
-        float slab_y = 0.0F;
-        for (const float y : image_y)
-            slab_y += y;
-        sums.slab_y.push_back(slab_y);
-        sums.total_y += slab_y;
-        scratch.multiply_adds += 2.0 * static_cast<double>(prepared.slab.channels) *
-                                 window_texels(prepared.slab, receiver.position_m);
-    }
-    return sums;
-}
-
 /// A point on a lamp's U planes, in the world, and its share of the unshadowed irradiance.
 struct LampSample {
     glm::dvec3 position_world_m{0.0};
@@ -77,35 +25,36 @@ struct LampSample {
 };
 
 /// Draws by energy among the slabs, then within the one drawn. select: uniform in [0, 1).
-LampSample draw(const Lamp& lamp,
-                const Hit& hit,
-                const Sums& sums,
-                const Scratch& scratch,
-                float select,
-                glm::vec2 xi) {
-    float rest = select * sums.total_y;
+LampSample draw(
+    const Lamp& lamp, const LightSums& sums, std::size_t index, float select, glm::vec2 xi) {
+    const float total_y = sums.total_y[index];
+    const auto slab_y = [&](std::size_t slab) { return sums.slabs[slab].y[index]; };
+    float rest = select * total_y;
     std::size_t s = 0;
-    while (s + 1 < lamp.slabs.size() && (rest >= sums.slab_y[s] || sums.slab_y[s] <= 0.0F)) {
-        rest -= sums.slab_y[s];
+    while (s + 1 < lamp.slabs.size() && (rest >= slab_y(s) || slab_y(s) <= 0.0F)) {
+        rest -= slab_y(s);
         ++s;
     }
     // Rounding may run past the last lit slab.
-    while (sums.slab_y[s] <= 0.0F)
+    while (slab_y(s) <= 0.0F)
         --s;
     constexpr float kBelowOne = 1.0F - 0x1p-24F;
     const PlacedSlab& slab = lamp.slabs[s];
-    const model::ApertureSample sample = model::sample_aperture(
-        *slab.prepared, receiver_in_slab(slab, hit), scratch.image_y[s], sums.slab_y[s],
-        std::clamp(rest / sums.slab_y[s], 0.0F, kBelowOne), xi);
+    const LightSums::OfSlab& light = sums.slabs[s];
+    const auto images = static_cast<std::size_t>(slab.prepared->slab.image_count());
+    const model::ApertureSample sample =
+        model::sample_aperture(*slab.prepared, light.receivers[index],
+                               std::span(light.image_y).subspan(index * images, images), slab_y(s),
+                               std::clamp(rest / slab_y(s), 0.0F, kBelowOne), xi);
     const glm::dvec4 u_slab(glm::dvec2(sample.u_m), -slab.prepared->slab.delta_m, 1.0);
-    return {glm::dvec3(slab.world_from_slab * u_slab),
-            sample.weight * (sums.total_y / sums.slab_y[s])};
+    return {glm::dvec3(slab.world_from_slab * u_slab), sample.weight * (total_y / slab_y(s))};
 }
 
 void trace_samples(const Lamp& lamp,
                    const Tracer& tracer,
                    const ShadeQuery& query,
-                   const Sums& sums,
+                   const LightSums& sums,
+                   std::size_t index,
                    Scratch& scratch) {
     const auto count = static_cast<std::size_t>(query.samples);
     scratch.weights.resize(count);
@@ -119,7 +68,7 @@ void trace_samples(const Lamp& lamp,
         const float select =
             (static_cast<float>(k) + shared::unit_float(random.x)) / static_cast<float>(count);
         const LampSample sample =
-            draw(lamp, hit, sums, scratch, std::min(select, 1.0F - 0x1p-24F),
+            draw(lamp, sums, index, std::min(select, 1.0F - 0x1p-24F),
                  shared::r2_point(static_cast<std::uint32_t>(k), {random.y, random.z}));
         const glm::dvec3 towards = sample.position_world_m - hit.position_world_m;
         scratch.weights[k] = sample.weight;
@@ -183,28 +132,65 @@ float sampling_sigma_y(const ShadeQuery& query,
     return static_cast<float>(std::sqrt(count / (count - 1.0) * squares));
 }
 
+// The light field's own sigma of irradiance, times what turns irradiance into diffuse radiance.
+float measured_sigma_y(const Lamp& lamp, const Hit& hit, glm::vec3 unshadowed, glm::vec3 diffuse) {
+    const double sigma_y = model::irradiance_sigma_y(
+        *lamp.measured,
+        {glm::dvec3(lamp.luminaire_from_world * glm::dvec4(hit.position_world_m, 1.0)),
+         lamp.luminaire_from_world_rotation * hit.shading_normal});
+    return static_cast<float>(sigma_y) * luminance709(diffuse) / luminance709(unshadowed);
+}
+
 }  // namespace
 
-LampLight shade(const Lamp& lamp, const Tracer& tracer, const ShadeQuery& query, Scratch& scratch) {
-    const double start_s = now_s();
-    const Sums sums = light_sums(lamp, query.hit, scratch);
-    const double middle_s = now_s();
-    scratch.sums_s += middle_s - start_s;
+void sum_light(const Lamp& lamp, std::span<const Hit> hits, LightSums& sums) {
+    sums.slabs.resize(lamp.slabs.size());
+    sums.irradiance.assign(hits.size(), glm::vec3(0.0F));
+    sums.total_y.assign(hits.size(), 0.0F);
+    sums.of_one_slab.resize(hits.size());
+    sums.multiply_adds = 0;
+    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
+        const model::PreparedSlab& prepared = *lamp.slabs[s].prepared;
+        const auto images = static_cast<std::size_t>(prepared.slab.image_count());
+        LightSums::OfSlab& slab = sums.slabs[s];
+        slab.receivers.clear();
+        for (const Hit& hit : hits)
+            slab.receivers.push_back(receiver_in_slab(lamp.slabs[s], hit));
+        slab.image_y.resize(hits.size() * images);
+        sums.multiply_adds +=
+            model::irradiance(prepared, slab.receivers, sums.of_one_slab, slab.image_y);
+        slab.y.assign(hits.size(), 0.0F);
+        for (std::size_t h = 0; h < hits.size(); ++h) {
+            sums.irradiance[h] += sums.of_one_slab[h];
+            for (std::size_t m = 0; m < images; ++m)
+                slab.y[h] += slab.image_y[h * images + m];
+            sums.total_y[h] += slab.y[h];
+        }
+    }
+}
+
+LampLight shade(const Lamp& lamp,
+                const Tracer& tracer,
+                const ShadeQuery& query,
+                const LightSums& sums,
+                std::size_t index,
+                Scratch& scratch) {
     LampLight light;
-    if (!(sums.total_y > 0.0F))
+    if (!(sums.total_y[index] > 0.0F))
         return light;
 
-    trace_samples(lamp, tracer, query, sums, scratch);
-    const glm::vec3 unshadowed = sums.irradiance * lamp.dim;
+    trace_samples(lamp, tracer, query, sums, index, scratch);
+    const glm::vec3 unshadowed = sums.irradiance[index] * lamp.dim;
     const glm::dvec3 visibility = weighted_mean(
         scratch.weights, [&](std::size_t k) { return scratch.visible[k] ? 1.0 : 0.0; });
     const glm::dvec3 lobe = weighted_mean(
         scratch.weights, [&](std::size_t k) { return static_cast<double>(scratch.lobes[k]); });
     light.irradiance = unshadowed * glm::vec3(visibility);
-    light.radiance = light.irradiance * query.reflectance.diffuse * shared::kInversePi +
-                     unshadowed * query.reflectance.specular * glm::vec3(lobe);
+    const glm::vec3 diffuse = light.irradiance * query.reflectance.diffuse * shared::kInversePi;
+    light.radiance = diffuse + unshadowed * query.reflectance.specular * glm::vec3(lobe);
     light.sigma_y = sampling_sigma_y(query, scratch, unshadowed, visibility, lobe);
-    scratch.visibility_s += now_s() - middle_s;
+    if (lamp.measured && luminance709(diffuse) > 0.0F)
+        light.sigma_measured_y = measured_sigma_y(lamp, query.hit, sums.irradiance[index], diffuse);
     return light;
 }
 

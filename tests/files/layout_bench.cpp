@@ -1,29 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how the images C_m of a large lamp (11 x 9 images of 256 x 256 texels, RGB) are best
-// laid out in an EXR file: size, time to write and time to read into [channel][m][j][i], best of
-// five from a warm cache. The table in docs/formats.md is this program's output. Not run by ctest:
-// it needs a quiet machine and 400 MB of disk.
+// Measures, for a large lamp (11 x 9 images of 256 x 256 texels, RGB), from a warm cache:
+//
+//   layout_bench ready    how long until a packed file is ready to render, against the time of
+//                         reading its C_m alone, and whether tables are better read or built
+//   layout_bench          that, and how the images are best laid out in an EXR file: size, time
+//                         to write and to read into [channel][m][j][i]
+//
+// The tables in docs/formats.md are this program's output. Not run by ctest: it needs a quiet
+// machine and 400 MB of disk.
 #include "formats/files/exr_file.h"
 #include "formats/files/lightfield.h"
 #include "formats/files/lightfield_parts.h"
 #include "formats/files/luminaire.h"
+#include "formats/model/prepared.h"
+#include "formats/model/tables.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
+#include <memory>
 
 namespace {
 
 using namespace nearfield;
 
-constexpr int kRepeats = 5;
+constexpr int kRepeats = 9;
 constexpr const char* kFile = "layout_bench.exr";
 
 /// A made-up headlight: a bright spot below a cut-off line, different in every image, dark
@@ -132,21 +143,84 @@ void bench_layouts(const Slab& slab) {
     }
 }
 
+/// A file's bytes from `offset` on, into new memory and unchecked, by `threads` threads: what a
+/// reader of C_m cannot beat.
+void read_bytes(const char* file, std::size_t offset, std::size_t size, std::size_t threads) {
+    const int descriptor = open(file, O_RDONLY | O_CLOEXEC);
+    const std::unique_ptr<char[]> bytes(new char[size]);
+    tbb::parallel_for(std::size_t{0}, threads, [&](std::size_t k) {
+        const std::size_t end = (k + 1) * size / threads;
+        for (std::size_t at = k * size / threads; at < end;) {
+            const ssize_t got =
+                pread(descriptor, &bytes[at], end - at, static_cast<off_t>(offset + at));
+            if (got <= 0)
+                break;
+            at += static_cast<std::size_t>(got);
+        }
+    });
+    close(descriptor);
+}
+
+void print_ready(const std::string& name, const Cost& cost, const Cost& unit) {
+    fmt::print("| {} | {:.1f} ({:.1f}) | {:.2f} ({:.2f}) |\n", name, cost.wall_ms, cost.cpu_ms,
+               cost.wall_ms / unit.wall_ms, cost.cpu_ms / unit.cpu_ms);
+}
+
+std::vector<model::PreparedSlab> ready_to_render(const char* file) {
+    std::vector<model::PreparedSlab> prepared;
+    LightField lamp = read_lightfield(file);
+    for (Slab& slab : lamp.slabs)
+        prepared.push_back(model::prepare(std::move(slab)));
+    return prepared;
+}
+
+void bench_ready(const LightField& lamp, std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    constexpr const char* kLean = "layout_bench_lean.exr";
+    write_luminaire({lamp, {}}, std::nullopt, kLean);
+    write_luminaire(model::pack(lamp, false), std::nullopt, kFile);
+    const std::size_t size = lamp.slabs[0].coeffs.size() * sizeof(float);
+    const Cost alone = best_of([&] { read_bytes(kLean, 4096, size, threads); });
+    fmt::print("\n| {} thread(s) | ms (CPU) | ratio |\n| --- | --- | --- |\n", threads);
+    print_ready("C_m alone into memory, unchecked", alone, alone);
+    const auto row = [&](const char* name, const std::function<void()>& run) {
+        const Cost cost = best_of(run);
+        print_ready(name, cost, alone);
+        return cost;
+    };
+    row("`read_lightfield`, lean", [&] { read_lightfield(kLean); });
+    row("`read_lightfield`, with tables", [&] { read_lightfield(kFile); });
+    row("**ready to render, lean**", [&] { ready_to_render(kLean); });
+    row("**ready to render, with tables**", [&] { ready_to_render(kFile); });
+    const auto build = [&](const LightField& lightfield) {
+        for (const Slab& slab : lightfield.slabs)
+            model::build_tables(slab);
+    };
+    row("`build_tables`", [&] { build(lamp); });
+    row("tables built: `read_lightfield` and `build_tables`",
+        [&] { build(read_lightfield(kLean)); });
+    row("tables read: `read_luminaire`", [&] { read_luminaire(kFile); });
+    std::remove(kLean);
+    std::remove(kFile);
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     const LightField lamp = bench_lamp();
-    fmt::print("| layout | MiB | write, ms (CPU) | read, ms (CPU) |\n| --- | --- | --- | --- |\n");
+    for (const std::size_t threads : {std::size_t{1}, std::size_t{2}})
+        bench_ready(lamp, threads);
+    if (argc > 1 && std::string(argv[1]) == "ready")
+        return 0;
+    fmt::print(
+        "\n| layout | MiB | write, ms (CPU) | read, ms (CPU) |\n| --- | --- | --- | --- |\n");
     bench_layouts(lamp.slabs[0]);
     const Cost write = best_of([&] { write_luminaire({lamp, {}}, std::nullopt, kFile); });
-    const Cost read = best_of([&] { read_lightfield(kFile); });
-    print_row("read_lightfield, lean", write, read);
-    std::vector<char> bytes(std::filesystem::file_size(kFile));
-    const Cost raw = best_of([&] {
-        bytes = std::vector<char>(bytes.size());
-        std::ifstream(kFile, std::ios::binary).read(bytes.data(), static_cast<long>(bytes.size()));
-    });
-    print_row("the file's bytes alone, one thread", write, raw);
+    print_row("`read_lightfield` of a lean luminaire, metadata included", write,
+              best_of([&] { read_lightfield(kFile); }));
+    const std::size_t size = std::filesystem::file_size(kFile);
+    print_row("the file's bytes alone into memory, unchecked", write,
+              best_of([&] { read_bytes(kFile, 0, size, 2); }));
     std::remove(kFile);
     return 0;
 }

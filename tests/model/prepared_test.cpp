@@ -214,6 +214,37 @@ TEST(FloatSum, SharesOfImagesAreTheirOwnIrradiance) {
     }
 }
 
+// Channels are summed together where a window is narrow: each must come out as if it were alone,
+// for windows from less than a texel to all of an image, and neighbors at once as each by itself.
+TEST(FloatSum, ChannelsAndNeighborsDoNotMix) {
+    LampShape shape;
+    shape.channels = 3;
+    for (const Weighting weighting : kWeightings) {
+        const Slab slab = random_lamp(make_profile("bspline"), weighting, 91, shape);
+        const PreparedSlab prepared = prepare(slab);
+        const std::size_t channel_size = slab.coeffs.size() / 3;
+        std::vector<ReceiverF> receivers;
+        for (const float height_m : {-0.15F, -0.02F, 0.01F, 0.05F, 0.3F, 2.0F})
+            for (const float x_m : {-0.04F, 0.0F, 0.03F})
+                receivers.push_back({{x_m, 0.01F, height_m}, {0.1F, -0.2F, -0.974679F}});
+        std::vector<glm::vec3> together(receivers.size());
+        irradiance(prepared, receivers, together);
+        for (int c = 0; c < 3; ++c) {
+            Slab alone = slab;
+            alone.channels = 1;
+            const auto first = slab.coeffs.begin() + static_cast<std::ptrdiff_t>(channel_size) * c;
+            alone.coeffs.assign(first, first + static_cast<std::ptrdiff_t>(channel_size));
+            const PreparedSlab prepared_alone = prepare(alone);
+            for (std::size_t k = 0; k < receivers.size(); ++k) {
+                const glm::vec3 expected = irradiance(prepared_alone, receivers[k]);
+                EXPECT_NEAR(together[k][c], expected.x, kTypical * expected.x) << k;
+            }
+        }
+        for (std::size_t k = 0; k < receivers.size(); ++k)
+            EXPECT_EQ(together[k], irradiance(prepared, receivers[k])) << k;
+    }
+}
+
 // The mean of weights is E, channel by channel: unbiased. Weights times 1.05 would be seen.
 TEST(FloatSum, ApertureSamplesAreUnbiased) {
     constexpr int kSamples = 40000;

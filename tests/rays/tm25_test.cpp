@@ -3,7 +3,6 @@
 
 #include "formats/files/error.h"
 #include "formats/rays/color.h"
-#include "formats/rays/report.h"
 #include "tests/rays/ray_file.h"
 
 #include <gtest/gtest.h>
@@ -219,13 +218,6 @@ TEST(Color, MatchesTheStandardObserver) {
         EXPECT_NEAR(c.y, row.y, kFitError);
         EXPECT_NEAR(c.z, row.z, kFitError);
     }
-}
-
-TEST(ParseSize, TakesTwoNumbersAndNothingElse) {
-    EXPECT_EQ(rays::parse_size("13x11", "--grid"), glm::ivec2(13, 11));
-    for (const char* bad :
-         {"", "13", "x", "13x", "13x11x", "0x3", "-1x3", "99999999999x1", "70000x1"})
-        EXPECT_THROW(rays::parse_size(bad, "--grid"), Error) << bad;
 }
 
 // Reads two files of other makers, where they are at hand, and compares with what is known of them.

@@ -36,6 +36,9 @@ TEST(Metrics, LabDifferenceOfGraysIsTheirLightnessDifference) {
     const double expected = lightness(1.0 - std::exp(-2.0)) - lightness(1.0 - std::exp(-1.0));
     EXPECT_NEAR(lab_difference(twice, reference), expected, 1e-4);
     EXPECT_EQ(lab_difference(reference, reference), 0.0);
+    // Black has L* = 0, by the curve's linear part.
+    const std::vector<float> black(6, 0.0F);
+    EXPECT_NEAR(lab_difference(black, reference), lightness(1.0 - std::exp(-1.0)), 1e-4);
 }
 
 // Proves the color axes: sRGB's red has Lab 53.24, 80.09, 67.20 (published), a distance of 117.34

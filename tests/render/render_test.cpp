@@ -3,7 +3,8 @@
 
 #include "formats/files/error.h"
 #include "formats/model/profile.h"
-#include "scenes.h"
+#include "render/cpu/lamps.h"
+#include "tests/render/scenes.h"
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -401,7 +402,94 @@ TEST(Render, GlossOfAPointLikeLampIsPhongs) {
                 1.0, 1e-4);  // the aperture's width turns the lobe
         }
     }
-    EXPECT_LT(rendered.report.sigma_worst_rel, 1e-4);
+    EXPECT_LT(rendered.report.sampling.p95_rel, 1e-4);
+}
+
+// Proves the figures of noise on numbers computed by hand: 20 lit pixels of sigma 1 ... 20 %, whose
+// 95th percentile is 19 % and half of which are above 10 %; a dark pixel does not count.
+TEST(Render, NoiseFiguresAreThoseComputedByHand) {
+    Layer radiance{"", {"R", "G", "B"}, {}}, sigma{"sigma", {"Y"}, {}};
+    for (int percent = 20; percent >= 1; --percent) {
+        radiance.values.insert(radiance.values.end(), 3, 2.0F);
+        sigma.values.push_back(2.0F * 0.01F * static_cast<float>(percent));
+    }
+    radiance.values.insert(radiance.values.end(), 3, 0.0019F);
+    sigma.values.push_back(1.0F);
+    sigma.values[10] = 0.2001F;  // 10 % and a little
+    const Noise noise = summarize_noise(radiance, sigma);
+    constexpr double kTolerance = 1e-6;  // float inputs
+    EXPECT_NEAR(noise.mean_rel, (0.105 * 20.0 + 0.00005) / 20.0, kTolerance);
+    EXPECT_NEAR(noise.p95_rel, 0.19, kTolerance);
+    EXPECT_NEAR(noise.share_above_10_percent, 11.0 / 20.0, kTolerance);
+    EXPECT_EQ(summarize_noise({"", {}, {0, 0, 0}}, {"", {}, {0}}).mean_rel, 0.0);
+}
+
+// Proves sigma_measured in closed form: of one coefficient, sigma over light is its own relative
+// sigma and the common scale's in squares, whatever the scale of the scene; lamps of one file add
+// as they are.
+TEST(Render, MeasuredSigmaIsTheFilesRelativeSigmaTimesDiffuseRadiance) {
+    LightField lamp = one_window_lamp(0.05, 2.0F);
+    lamp.slabs[0].sigma = {0.06F};
+    lamp.scale_sigma_rel = 0.04;
+    const double relative = std::hypot(0.03, 0.04);
+    Scene scene = floor_scene();
+    scene.luminaires = {write_lamp(lamp, "measured", pose({0.3, 0.1, 2}, {0.1, 0.2, -1}))};
+    scene.luminaires[0].dim = 0.5;
+    scene.luminaires.push_back(scene.luminaires[0]);
+    for (const double scale : {1.0, 0.01}) {
+        const glm::dmat4 matrix = glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
+        RenderOptions options = small(5);
+        options.samples_per_pixel = 4;
+        options.sigma_measured = true;
+        const Rendered rendered = render(transformed(scene, matrix), options);
+        EXPECT_TRUE(rendered.report.has_sigma_measured);
+        for (std::size_t i = 0; i < 25; ++i) {
+            const float radiance = layer(rendered.picture, "").values[3 * i + 1];
+            EXPECT_GT(radiance, 0.0F);
+            EXPECT_NEAR(layer(rendered.picture, "sigma_measured").values[i] / radiance, relative,
+                        1e-5 * relative);  // float sums against double
+        }
+    }
+}
+
+// Proves that the layer is not there where nobody asked for it, or where no file knows.
+TEST(Render, MeasuredSigmaIsLeftOutWhereNothingIsKnown) {
+    LightField lamp = one_window_lamp(0.05, 2.0F);
+    Scene scene = floor_scene();
+    RenderOptions options = small(4);
+    const auto layers = [&] {
+        scene.luminaires = {write_lamp(lamp, "perhaps", pose({0, 0, 2}, kDown))};
+        return render(scene, options).picture.layers.size();
+    };
+    const std::size_t without = layers();
+    options.sigma_measured = true;
+    EXPECT_EQ(layers(), without);
+    lamp.slabs[0].sigma = {0.06F};
+    EXPECT_EQ(layers(), without + 1);
+    options.sigma_measured = false;
+    EXPECT_EQ(layers(), without);
+}
+
+// Proves that summing light for many hits at once changes no bit of any of them, and that
+// multiply-adds are counted where they are done.
+TEST(Render, LightSumsOfManyHitsAreThoseOfEach) {
+    const Lamps lamps = load_lamps(uneven_scene());
+    std::vector<Hit> hits(7);
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        hits[k].position_world_m = {0.3 * static_cast<double>(k) - 0.9, 0.2, k == 4 ? 3.0 : 0.0};
+        hits[k].shading_normal = {0, 0, 1};
+    }
+    LightSums all, one;
+    sum_light(lamps.lamps[0], hits, all);
+    std::uint64_t multiply_adds = 0;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        sum_light(lamps.lamps[0], {&hits[k], 1}, one);
+        EXPECT_EQ(all.irradiance[k], one.irradiance[0]) << k;
+        EXPECT_EQ(all.total_y[k], one.total_y[0]) << k;
+        EXPECT_EQ(k == 4, one.multiply_adds == 0U) << k;  // behind the lamp
+        multiply_adds += one.multiply_adds;
+    }
+    EXPECT_EQ(all.multiply_adds, multiply_adds);
 }
 
 // Proves that options out of range and a missing camera are refused by name.

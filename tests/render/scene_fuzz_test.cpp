@@ -2,7 +2,7 @@
 #include "formats/files/error.h"
 #include "formats/scene/gltf_guard.h"
 #include "formats/scene/scene.h"
-#include "scenes.h"
+#include "tests/render/scenes.h"
 #include "tests/support/mutate.h"
 
 #include <gtest/gtest.h>

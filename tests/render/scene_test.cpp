@@ -2,7 +2,7 @@
 #include "formats/scene/scene.h"
 
 #include "formats/files/error.h"
-#include "scenes.h"
+#include "tests/render/scenes.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

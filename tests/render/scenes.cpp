@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes.h"
+#include "tests/render/scenes.h"
 
 #include "formats/model/profile.h"
 

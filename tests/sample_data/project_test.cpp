@@ -34,7 +34,7 @@ class LampInTheSpan : public ::testing::TestWithParam<SpanCase> {
         truth_.weighting = GetParam().weighting;
         truth_.channels = 3;
         SplitMix random{3};
-        truth_.coeffs.resize(3U * 12U * 30U);
+        truth_.coeffs.resize(std::size_t{3} * 12 * 30);
         for (float& coefficient : truth_.coeffs) {
             coefficient = static_cast<float>(0.1 + 0.9 * random.next());
         }
@@ -134,6 +134,13 @@ TEST(Projection, RefusesUnusablePlanes) {
     EXPECT_THROW(project(headlight_source(headlight, 3.0), planes, {0, {}}), Error);
     planes.channels = 2;
     EXPECT_THROW(project(headlight_source(headlight, 3.0), planes, {}), Error);
+    // Sizes that would take days or more memory than a machine has; refused at once.
+    for (const auto& [grid, texels] : {std::pair{glm::ivec2(9999), glm::ivec2(9999)},
+                                       {glm::ivec2(1, 9999), glm::ivec2(1)},
+                                       {glm::ivec2(11, 9), glm::ivec2(9999)}}) {
+        planes = headlight_planes(3.0, grid, texels, "box", Weighting::Irradiance, 1);
+        EXPECT_THROW(project(headlight_source(headlight, 3.0), planes, {}), Error);
+    }
 }
 
 }  // namespace
