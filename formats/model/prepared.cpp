@@ -129,14 +129,20 @@ using Sums = std::array<float, 3>;  // of the channels; 0 where there is none
 
 // One image with irradiance weighting: p = n_x X1 - n_z X0, q = n_y X0.
 Sums image_sums(const PreparedSlab& prepared, int m, const LitPart& part, const View& view) {
-    std::array<const float*, 3> images{};
-    for (int c = 0; c < prepared.slab.channels; ++c)
-        images[static_cast<std::size_t>(c)] = first_texel(prepared, c, m, part);
-    return row_sums(images, prepared.slab.channels,
-                    static_cast<std::size_t>(prepared.slab.texels.x),
-                    {static_cast<std::size_t>(part.y.count), static_cast<std::size_t>(part.x.count),
-                     view.p.data() + part.x_at, view.q.data() + part.x_at,
-                     view.y.m0.data() + part.y_at, view.y.m1.data() + part.y_at});
+    const auto stride = static_cast<std::size_t>(prepared.slab.texels.x);
+    const RowWeights weights{static_cast<std::size_t>(part.y.count),
+                             static_cast<std::size_t>(part.x.count),
+                             view.p.data() + part.x_at,
+                             view.q.data() + part.x_at,
+                             view.y.m0.data() + part.y_at,
+                             view.y.m1.data() + part.y_at};
+    const auto first = [&](int channel) { return first_texel(prepared, channel, m, part); };
+    if (prepared.slab.channels == 1)
+        return {row_sum(first(0), stride, weights), 0.0F, 0.0F};
+    if (weights.columns <= kNarrowColumns)
+        return narrow_row_sums({first(0), first(1), first(2)}, stride, weights);
+    return {row_sum(first(0), stride, weights), row_sum(first(1), stride, weights),
+            row_sum(first(2), stride, weights)};
 }
 
 // Sum of one image and channel with radiance weighting: the kernel at every texel's centroid.
@@ -177,16 +183,17 @@ Sums image_sums_radiance(const PreparedSlab& prepared,
 
 // The weights along x that depend on the normal (irradiance weighting: p and q; radiance: centroids
 // in p).
-void weigh_x(View& s, bool radiance_weighting) {
-    const glm::vec3 n = s.normal;
-    s.p.resize(s.x.m0.size());
-    s.q.resize(s.x.m0.size());
-    for (std::size_t i = 0; i < s.x.m0.size(); ++i) {
+void weigh_x(View& view, bool radiance_weighting) {
+    const glm::vec3 n = view.normal;
+    const std::vector<float>&x0 = view.x.m0, &x1 = view.x.m1;
+    view.p.resize(x0.size());
+    view.q.resize(x0.size());
+    for (std::size_t i = 0; i < x0.size(); ++i) {
         if (radiance_weighting)
-            s.p[i] = s.x.m0[i] > 0.0F ? s.x.m1[i] / s.x.m0[i] : 0.0F;
+            view.p[i] = x0[i] > 0.0F ? x1[i] / x0[i] : 0.0F;
         else
-            s.p[i] = n.x * s.x.m1[i] - n.z * s.x.m0[i];
-        s.q[i] = n.y * s.x.m0[i];
+            view.p[i] = n.x * x1[i] - n.z * x0[i];
+        view.q[i] = n.y * x0[i];
     }
 }
 

@@ -72,9 +72,9 @@ HWY_INLINE Vec block_sums(const float* image,
 
 // Three channels of a window one vector wide: they share the weights' loads. Two rows at a time
 // fill 12 accumulators.
-HWY_INLINE std::array<float, 3> narrow_sums(const std::array<const float*, 3>& images,
-                                            std::size_t stride,
-                                            const RowWeights& weights) {
+std::array<float, 3> narrow_row_sums(const std::array<const float*, 3>& images,
+                                     std::size_t stride,
+                                     const RowWeights& weights) {
     const Floats d;
     constexpr int kChannels = 3, kUnroll = 2, kSums = kChannels * kUnroll;
     Vec r[kSums], t[kSums];
@@ -110,7 +110,7 @@ HWY_INLINE std::array<float, 3> narrow_sums(const std::array<const float*, 3>& i
     return sums;
 }
 
-float channel_sum(const float* image, std::size_t stride, const RowWeights& weights) {
+float row_sum(const float* image, std::size_t stride, const RowWeights& weights) {
     const auto& [rows, columns, p, q, y0, y1] = weights;
     const Floats d;
     const std::size_t lanes = hn::Lanes(d);
@@ -142,30 +142,22 @@ float channel_sum(const float* image, std::size_t stride, const RowWeights& weig
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-std::array<float, 3> row_sums(const std::array<const float*, 3>& images,
-                              int channels,
-                              std::size_t stride,
-                              const RowWeights& weights) {
-    if (channels == 3 && weights.columns <= hn::Lanes(Floats()))
-        return narrow_sums(images, stride, weights);
-    std::array<float, 3> sums{};
-    for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c)
-        sums[c] = channel_sum(images[c], stride, weights);
-    return sums;
-}
-
 }  // namespace nearfield::model::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace nearfield::model {
-HWY_EXPORT(row_sums);
+HWY_EXPORT(row_sum);
+HWY_EXPORT(narrow_row_sums);
 
-std::array<float, 3> row_sums(const std::array<const float*, 3>& images,
-                              int channels,
-                              std::size_t stride,
-                              const RowWeights& weights) {
-    return HWY_DYNAMIC_DISPATCH(row_sums)(images, channels, stride, weights);
+float row_sum(const float* image, std::size_t stride, const RowWeights& weights) {
+    return HWY_DYNAMIC_DISPATCH(row_sum)(image, stride, weights);
+}
+
+std::array<float, 3> narrow_row_sums(const std::array<const float*, 3>& images,
+                                     std::size_t stride,
+                                     const RowWeights& weights) {
+    return HWY_DYNAMIC_DISPATCH(narrow_row_sums)(images, stride, weights);
 }
 
 }  // namespace nearfield::model

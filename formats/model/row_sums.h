@@ -17,14 +17,19 @@ struct RowWeights {
     const float *p, *q, *y0, *y1;
 };
 
-/// Per channel c: sum over rows r and columns i of
-/// images[c][r * stride + i] * (y0[r] * p[i] + y1[r] * q[i]).
-/// An image may be read (finite values) up to kRowPadding beyond a row. channels: 1 ... 3; the
-/// others' sums are 0. Cost: 2 multiply-adds a texel and channel; an image is read once, from cache
-/// where neighboring receivers share windows.
-std::array<float, 3> row_sums(const std::array<const float*, 3>& images,
-                              int channels,
-                              std::size_t stride,
-                              const RowWeights& weights);
+/// sum over rows r and columns i of image[r * stride + i] * (y0[r] * p[i] + y1[r] * q[i]).
+/// The image may be read (finite values) up to kRowPadding beyond a row.
+/// Cost: 2 multiply-adds a texel; an image is read once, from cache where
+/// neighboring receivers share windows.
+float row_sum(const float* image, std::size_t stride, const RowWeights& weights);
+
+/// Windows as wide as the narrowest vector that is dispatched to.
+constexpr std::size_t kNarrowColumns = 8;
+
+/// The same for the three channels of a window of at most kNarrowColumns, which share the weights'
+/// loads.
+std::array<float, 3> narrow_row_sums(const std::array<const float*, 3>& images,
+                                     std::size_t stride,
+                                     const RowWeights& weights);
 
 }  // namespace nearfield::model
