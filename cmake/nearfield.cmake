@@ -36,5 +36,6 @@ function(nearfield_test)
     gtest_discover_tests(${ARG_NAME}
         WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/test_output/${ARG_NAME}
         DISCOVERY_MODE PRE_TEST
-        PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1200)
+        # Tests of one executable write to the same folder: never two at once.
+        PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 2400 RESOURCE_LOCK ${ARG_NAME})
 endfunction()

@@ -20,7 +20,8 @@ void resize_large(std::vector<Value>& values, std::size_t count) {
     const std::uintptr_t end = (begin + count * sizeof(Value)) / kHugePage * kHugePage;
     // Advice: where it is not taken, nothing but time is lost.
     if (end > first)
-        madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+        madvise(reinterpret_cast<char*>(values.data()) + (first - begin), end - first,
+                MADV_HUGEPAGE);
     values.resize(count);
 }
 

@@ -44,7 +44,7 @@ auto table_atlases(std::size_t slab_index, const Slab& slab, Tables& tables) {
     };
     const auto interleaved = [](const char* channel, Value* data, std::ptrdiff_t component,
                                 glm::ivec2 size) {
-        const std::ptrdiff_t row = 2 * size.x;
+        const std::ptrdiff_t row = std::ptrdiff_t{2} * size.x;
         return Plane<Value>{channel, data, (size.y - 1) * row + component, 0, 2, -row};
     };
     const glm::ivec2 texels = slab.texels;

@@ -116,12 +116,12 @@ LitPart lit_part(const FloatWindow& x, const FloatWindow& y, glm::ivec4 lit) {
 
 const float* first_texel(const PreparedSlab& prepared, int channel, int m, const LitPart& part) {
     const Slab& slab = prepared.slab;
-    const bool is_last = channel + 1 == slab.channels && m + 1 == slab.image_count();
-    const float* image =
-        is_last ? prepared.last_image.data() : slab.coeffs.data() + slab.image_offset(channel, m);
+    const std::size_t offset = slab.image_offset(channel, m);
+    const float* image = offset >= prepared.tail_offset
+                             ? prepared.tail.data() + (offset - prepared.tail_offset)
+                             : slab.coeffs.data() + offset;
     return image +
-           static_cast<std::size_t>(part.y.first) *
-               static_cast<std::size_t>(prepared.slab.texels.x) +
+           static_cast<std::size_t>(part.y.first) * static_cast<std::size_t>(slab.texels.x) +
            static_cast<std::size_t>(part.x.first);
 }
 
@@ -280,9 +280,11 @@ PreparedSlab prepare(Slab slab) {
     tbb::parallel_for(std::size_t{0}, prepared.lit.size(), [&](std::size_t m) {
         prepared.lit[m] = lit_texels(slab, static_cast<int>(m));
     });
-    prepared.last_image.assign(slab.coeffs.end() - static_cast<std::ptrdiff_t>(slab.texel_count()),
-                               slab.coeffs.end());
-    prepared.last_image.resize(slab.texel_count() + kRowPadding, 0.0F);
+    const std::size_t total = slab.coeffs.size(), image = slab.texel_count();
+    prepared.tail_offset = total > kRowPadding ? (total - kRowPadding) / image * image : 0;
+    prepared.tail.assign(slab.coeffs.begin() + static_cast<std::ptrdiff_t>(prepared.tail_offset),
+                         slab.coeffs.end());
+    prepared.tail.resize(prepared.tail.size() + kRowPadding, 0.0F);
     prepared.slab = std::move(slab);
     return prepared;
 }

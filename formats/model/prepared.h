@@ -17,8 +17,10 @@ namespace nearfield::model {
 /// A slab made ready for SIMD, which may read a few floats beyond a row's end.
 struct PreparedSlab {
     Slab slab;
-    std::vector<float>
-        last_image;  // the array's last image again, with kRowPadding zeros behind it
+    /// The end of slab.coeffs again, from an image's start and with zeros behind it: for the images
+    /// from which SIMD would read beyond the array.
+    std::vector<float> tail;
+    std::size_t tail_offset = 0;    // where it starts in slab.coeffs
     std::vector<float> cell_share;  // [n] of int phi
     std::vector<glm::ivec4> lit;  // [m] x, y of the first texel with light and of one past the last
 };

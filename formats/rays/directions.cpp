@@ -199,8 +199,9 @@ BlockShares fit_level(const Problem& p,
                 flux += p.crossings[rays[i]].flux;
         if (!(flux > 0.0))
             return;
-        const glm::dvec2 block(static_cast<double>(b % static_cast<std::size_t>(level.blocks.x)),
-                               static_cast<double>(b / static_cast<std::size_t>(level.blocks.x)));
+        const auto columns = static_cast<std::size_t>(level.blocks.x);
+        const std::size_t column = b % columns, row = b / columns;
+        const glm::dvec2 block(static_cast<double>(column), static_cast<double>(row));
         const std::vector<double> prior =
             parent != nullptr ? shares_at(*parent, p.s.min_m + (block + 0.5) * grid.size_m())
                               : std::vector<double>();
