@@ -130,7 +130,7 @@ MipLevel halve(const float* coeffs, glm::ivec2 from, std::size_t images) {
         for (int j = 0; j < from.y; ++j) {
             const float* row = fine + to_size(j) * to_size(from.x);
             float* sums = coarse + to_size(j / 2) * to_size(level.texels.x);
-            for (int i = 0; i < from.x / 2; ++i)
+            for (std::size_t i = 0; i < to_size(from.x / 2); ++i)
                 sums[i] += 0.25F * (row[2 * i] + row[2 * i + 1]);
             if (from.x % 2 == 1)
                 sums[from.x / 2] += 0.25F * row[from.x - 1];
