@@ -57,6 +57,7 @@ CLI::App* add_command(CLI::App& app,
 
 std::vector<std::pair<std::string, std::string>> same_words(const std::vector<std::string>& words) {
     std::vector<std::pair<std::string, std::string>> choices;
+    choices.reserve(words.size());
     for (const std::string& word : words)
         choices.emplace_back(word, word);
     return choices;
@@ -87,7 +88,8 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
     if (called.empty())
         return rest.empty() ? "no command given" : unknown_command(app, rest.front());
     // A command's leftovers are known from CLI11's message alone, which ends with them.
-    const std::string message = error.what(), colon = ": ";
+    const std::string colon = ": ";
+    std::string message = error.what();
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
         const std::string words = message.substr(message.rfind(colon) + colon.size());
         return unknown_option(*called.front(), words.substr(0, words.find(' ')));

@@ -10,7 +10,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 namespace nearfield::app {
@@ -61,7 +60,7 @@ void print(const std::string& result) {
     const std::size_t written = std::fwrite(result.data(), 1, result.size(), stdout);
     const bool is_good = written == result.size() && std::fflush(stdout) == 0;
     if (!is_good && errno != EPIPE)
-        throw Error{"cannot write file", "standard output", "", std::strerror(errno)};
+        throw Error{"cannot write file", "standard output", "", system_error()};
 }
 
 void say(const std::string& remark) {

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
@@ -15,7 +14,7 @@ namespace nearfield {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, const std::string& path) {
-    throw Error{what, path, "", std::strerror(errno)};
+    throw Error{what, path, "", system_error()};
 }
 
 // Renaming onto a device or pipe would replace it.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/files/error.h"
 
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 namespace nearfield {
@@ -29,5 +31,9 @@ Error::Error(std::string what_failed,
       where(std::move(where_found)),
       expected(std::move(expected_value)),
       got(std::move(got_value)) {}
+
+std::string system_error() {
+    return std::generic_category().message(errno);
+}
 
 }  // namespace nearfield

@@ -21,4 +21,7 @@ struct Error : std::runtime_error {
     std::string what_, where, expected, got;
 };
 
+/// What the system's last failed call says of itself (errno): "No such file or directory".
+std::string system_error();
+
 }  // namespace nearfield

@@ -11,7 +11,6 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 
 namespace nearfield::exr {
@@ -40,7 +39,7 @@ struct Input {
     explicit Input(const std::string& file_path) : path(file_path) {
         descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
         if (descriptor < 0)
-            throw Error{"cannot read file", path, "", std::strerror(errno)};
+            throw Error{"cannot read file", path, "", system_error()};
         struct stat status {};
         if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
             close(descriptor);

@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <string_view>
@@ -106,7 +104,7 @@ PointList read(std::istream& stream, const std::string& name) {
         if (!trimmed(line).empty())
             add_point(points, split(line), places, fmt::format("{}, line {}", name, number));
     if (stream.bad())
-        throw Error{"cannot read file", name, "", std::strerror(errno)};
+        throw Error{"cannot read file", name, "", system_error()};
     return points;
 }
 
@@ -117,7 +115,7 @@ PointList read_points(const std::string& path) {
         return read(std::cin, "standard input");
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        throw Error{"cannot read file", path, "", std::strerror(errno)};
+        throw Error{"cannot read file", path, "", system_error()};
     return read(file, path);
 }
 

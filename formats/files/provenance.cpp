@@ -10,11 +10,9 @@
 #include <sys/resource.h>
 #include <xxhash.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -29,7 +27,7 @@ std::string hash_file(const std::string& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                                std::fclose);
     if (!file)
-        throw Error{"cannot read file", path, "", std::strerror(errno)};
+        throw Error{"cannot read file", path, "", system_error()};
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                                 XXH3_freeState);
     XXH3_128bits_reset(state.get());
@@ -38,7 +36,7 @@ std::string hash_file(const std::string& path) {
     while ((size = std::fread(block.data(), 1, block.size(), file.get())) > 0)
         XXH3_128bits_update(state.get(), block.data(), size);
     if (std::ferror(file.get()) != 0)
-        throw Error{"cannot read file", path, "", std::strerror(errno)};
+        throw Error{"cannot read file", path, "", system_error()};
     const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
