@@ -12,6 +12,7 @@ namespace nearfield::test {
 
 /// How many mutations a fuzz test tries: NEARFIELD_FUZZ_COUNT, 1000 where it is not set.
 inline std::uint64_t fuzz_count() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): no test sets environment variables.
     const char* text = std::getenv("NEARFIELD_FUZZ_COUNT");
     return text == nullptr ? 1000 : std::strtoull(text, nullptr, 10);
 }
