@@ -10,8 +10,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <limits>
 #include <memory>
 
 namespace nearfield::app {
@@ -30,18 +28,17 @@ LightField simulate(const SimulateCommand& command) {
     if (command.lamp == Lamp::Reference)
         return sample_data::simulate_reference();
     ProgressLine progress("simulate");
-    return sample_data::simulate_headlight(command.options,
-                                           [&](double fraction) { progress.update(fraction); })
-        .lightfield;
+    const auto update = [&](double fraction) { progress.update(fraction); };
+    return sample_data::simulate_headlight(command.options, update).lightfield;
 }
 
 void run(const SimulateCommand& command) {
     const double start_s = now_s();
     check_size(command.options.grid, command.options.texels);
     check_outputs({command.output.path, command.receivers}, {});
-    const LightField lightfield = simulate(command);
     if (!command.receivers.empty())
         write_file(sample_data::receivers_csv(), command.receivers);
+    const LightField lightfield = simulate(command);
     const RunRecord run = record_run(start_s);
     write_lightfield(lightfield, command.output.stored(run), command.output.path);
     for (const auto& [name, value] : lightfield.provenance.figures)
@@ -72,8 +69,7 @@ void add_simulate(CLI::App& app) {
                {{"irradiance", Weighting::Irradiance}, {"radiance", Weighting::Radiance}},
                "what the coefficients are a density of");
     add_choice(*sub, "--channels", c->options.channels, {{"3", 3}, {"1", 1}}, "RGB, or Y alone");
-    add_number(*sub, "--seed", c->options.seed, std::uint64_t{0},
-               std::numeric_limits<std::uint64_t>::max(), "N", "of the facets' pattern");
+    add_seed(*sub, c->options.seed, "of the facets' pattern");
     add_number(*sub, "--refine", c->options.refine, 1, 8, "N", "multiplies quadrature nodes");
     sub->add_option("--receivers", c->receivers,
                     "also write the reference lamp's receivers, CSV for probe --points")

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <glm/glm.hpp>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -72,6 +73,13 @@ CLI::Option* add_number(CLI::App& command,
         return CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
     });
     return option;
+}
+
+/// --seed, any number of its type.
+template <typename Seed>
+CLI::Option* add_seed(CLI::App& command, Seed& seed, const std::string& help) {
+    return add_number(command, "--seed", seed, Seed{0}, std::numeric_limits<Seed>::max(), "N",
+                      help);
 }
 
 /// One of a few words.

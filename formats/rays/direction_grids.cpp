@@ -3,6 +3,8 @@
 #include "formats/model/profile.h"
 #include "formats/rays/directions.h"
 
+#include <algorithm>
+
 namespace nearfield::rays {
 
 double Aperture::integral_m2() const {
@@ -14,6 +16,13 @@ Aperture cover(const Profile& profile, const Rectangle& rectangle, glm::ivec2 gr
     const glm::dvec2 cells(grid - static_cast<int>(profile.cells.size()) + 1);
     return {profile, grid, (rectangle.max_m - rectangle.min_m) / cells,
             0.5 * (rectangle.min_m + rectangle.max_m)};
+}
+
+glm::ivec2 square_grid(const Profile& profile, const Rectangle& rectangle, int cells) {
+    const glm::dvec2 size = rectangle.max_m - rectangle.min_m;
+    const double pitch = std::max(size.x, size.y) / cells;
+    return glm::max(glm::ivec2(1), glm::ivec2(glm::ceil(size / pitch - 1e-9))) +
+           static_cast<int>(profile.cells.size()) - 1;
 }
 
 BlockWeights weights_at(glm::ivec2 blocks, const Rectangle& s, glm::dvec2 s_m) {

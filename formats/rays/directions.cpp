@@ -180,6 +180,32 @@ std::vector<double> share_out(const Problem& p,
     return next;
 }
 
+// The shares of one block's rays, [channel][m], drawn to `prior` (empty: to nothing).
+std::vector<double> fit_block(const Problem& p,
+                              const std::uint32_t* rays,
+                              std::size_t count,
+                              const Level& level,
+                              const std::vector<double>& prior,
+                              int skip_fold) {
+    const auto images = static_cast<std::size_t>(p.aperture.image_count());
+    const std::size_t size = static_cast<std::size_t>(p.channels()) * images;
+    const double prior_flux = level.prior_rays * p.ray_flux;
+    std::vector<double> present = prior;
+    if (prior.empty())
+        present.assign(size, 1.0 / static_cast<double>(images));
+    for (int step = 0; step < level.iterations; ++step) {
+        present = share_out(p, rays, count, skip_fold, present);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            present[i] += prior.empty() ? 0.0 : prior_flux * prior[i];
+            sum += i < images ? present[i] : 0.0;
+        }
+        for (double& share : present)
+            share = sum > 0.0 ? share / sum : 0.0;
+    }
+    return present;
+}
+
 BlockShares fit_level(const Problem& p,
                       const Blocks& sorted,
                       const Level& level,
@@ -205,19 +231,7 @@ BlockShares fit_level(const Problem& p,
         const std::vector<double> prior =
             parent != nullptr ? shares_at(*parent, p.s.min_m + (block + 0.5) * grid.size_m())
                               : std::vector<double>();
-        const double prior_flux = parent != nullptr ? level.prior_rays * p.ray_flux : 0.0;
-        std::vector<double> present =
-            parent != nullptr ? prior : std::vector<double>(size, 1.0 / fit.images);
-        for (int step = 0; step < level.iterations; ++step) {
-            present = share_out(p, rays, count, skip_fold, present);
-            double sum = 0.0;
-            for (std::size_t i = 0; i < size; ++i) {
-                present[i] += prior.empty() ? 0.0 : prior_flux * prior[i];
-                sum += i < static_cast<std::size_t>(fit.images) ? present[i] : 0.0;
-            }
-            for (double& share : present)
-                share = sum > 0.0 ? share / sum : 0.0;
-        }
+        const std::vector<double> present = fit_block(p, rays, count, level, prior, skip_fold);
         for (std::size_t i = 0; i < size; ++i)
             fit.flux[b * size + i] = static_cast<float>(present[i] * flux);
         fit.block_flux[b] = flux;
@@ -326,14 +340,6 @@ double replay(const Problem& p, const std::vector<Level>& levels) {
     for (std::size_t l = 0; l < levels.size(); ++l)
         current = fit_folds(p, levels[l], l > 0 ? &current : nullptr);
     return current.nats;
-}
-
-// A grid with about square pitch, `cells` across the larger side of the rectangle.
-glm::ivec2 square_grid(const Profile& profile, const Rectangle& rectangle, int cells) {
-    const glm::dvec2 size = rectangle.max_m - rectangle.min_m;
-    const double pitch = std::max(size.x, size.y) / cells;
-    return glm::max(glm::ivec2(1), glm::ivec2(glm::ceil(size / pitch - 1e-9))) +
-           static_cast<int>(profile.cells.size()) - 1;
 }
 
 }  // namespace

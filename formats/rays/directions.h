@@ -33,6 +33,9 @@ struct Aperture {
 /// `rectangle`.
 Aperture cover(const Profile& profile, const Rectangle& rectangle, glm::ivec2 grid);
 
+/// A grid with about square pitch, `cells` of them across the larger side of the rectangle.
+glm::ivec2 square_grid(const Profile& profile, const Rectangle& rectangle, int cells);
+
 /// One subdivision of S, and how the shares of its blocks are found.
 struct Level {
     glm::ivec2 blocks{1};

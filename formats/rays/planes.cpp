@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace nearfield::rays {
@@ -15,6 +16,10 @@ namespace {
 // A part of the rectangle's width that is added beyond the outermost kept ray, so that it lies
 // inside.
 constexpr double kMargin = 0.02;
+// Half-width of the band where two slabs share a ray: the tangent, 5 degrees, of the angle to the
+// plane between them. The band is then as wide as the pitch that 100,000 rays allow, which basis
+// functions can follow; wider ones leave the slabs more directions to cover and coarser pitches.
+constexpr float kHalfBand = 0.0875F;
 
 // The interval of one coordinate that leaves out at most `trim` of the flux on either side.
 template <typename Coordinate>
@@ -41,18 +46,45 @@ std::pair<double, double> bound(const std::vector<Crossing>& crossings,
     return {low - margin, high + margin};
 }
 
+// From 0 to 1 as the component `a` grows past `b` >= 0: precedence(a, b) + precedence(b, a) = 1.
+float precedence(float a, float b) {
+    // Of the angle to the plane a = b. Both may be zero: then the third axis takes all.
+    const float tangent = (a - b) / std::max(a + b, std::numeric_limits<float>::min());
+    return glm::smoothstep(-kHalfBand, kHalfBand, tangent);
+}
+
 }  // namespace
 
-std::optional<int> slab_of(glm::vec3 direction, int slab_count) {
-    if (slab_count == 1)
-        return direction.z > 0 ? std::optional<int>(0) : std::nullopt;
+int dominant_slab(glm::vec3 direction) {
     const glm::vec3 size = glm::abs(direction);
-    int slab = direction.z > 0 ? 0 : 5;
     if (size.x > size.z && size.x >= size.y)
-        slab = direction.x > 0 ? 1 : 2;
-    else if (size.y > size.z)
-        slab = direction.y > 0 ? 3 : 4;
-    return slab < slab_count ? std::optional<int>(slab) : std::nullopt;
+        return direction.x > 0 ? 1 : 2;
+    if (size.y > size.z)
+        return direction.y > 0 ? 3 : 4;
+    return direction.z > 0 ? 0 : 5;
+}
+
+std::array<float, 6> slab_shares(glm::vec3 direction, int slab_count) {
+    std::array<float, 6> shares{};
+    if (slab_count == 1) {
+        shares[0] = direction.z > 0 ? 1.0F : 0.0F;
+        return shares;
+    }
+    if (dominant_slab(direction) >= slab_count)
+        return shares;
+    // Of each axis' two slabs the one that the direction points to.
+    const glm::vec3 size = glm::abs(direction);
+    const int slab[3] = {direction.x > 0 ? 1 : 2, direction.y > 0 ? 3 : 4, direction.z > 0 ? 0 : 5};
+    const float weight[3] = {precedence(size.x, size.y) * precedence(size.x, size.z),
+                             precedence(size.y, size.x) * precedence(size.y, size.z),
+                             precedence(size.z, size.x) * precedence(size.z, size.y)};
+    float sum = 0.0F;
+    for (int axis = 0; axis < 3; ++axis)
+        sum += slab[axis] < slab_count ? weight[axis] : 0.0F;
+    for (int axis = 0; axis < 3; ++axis)
+        if (slab[axis] < slab_count)
+            shares[static_cast<std::size_t>(slab[axis])] = weight[axis] / sum;
+    return shares;
 }
 
 glm::dmat3 file_from_slab(int slab) {
@@ -74,15 +106,15 @@ glm::dmat3 file_from_slab(int slab) {
 }
 
 Waist find_waist(const RaySet& set,
-                 const std::vector<std::uint32_t>& members,
+                 const std::vector<Member>& members,
                  const glm::dmat3& file_from_slab) {
     // A ray crosses height z at a + t z (t: tangents). sum w |a + t z - mean|^2 is a parabola in z
     // with its minimum at z = -cov(a, t) / var(t). Two passes: the covariance of differences from
     // the mean keeps its digits.
     const glm::dmat3 slab_from_file = glm::transpose(file_from_slab);
-    const auto line = [&](std::uint32_t r, glm::dvec2& a, glm::dvec2& t) {
-        const glm::dvec3 p = slab_from_file * glm::dvec3(set.rays[r].position_m);
-        const glm::dvec3 d = slab_from_file * glm::dvec3(set.rays[r].direction);
+    const auto line = [&](const Ray& ray, glm::dvec2& a, glm::dvec2& t) {
+        const glm::dvec3 p = slab_from_file * glm::dvec3(ray.position_m);
+        const glm::dvec3 d = slab_from_file * glm::dvec3(ray.direction);
         t = glm::dvec2(d) / d.z;
         a = glm::dvec2(p) - t * p.z;
         return p.z;
@@ -90,9 +122,10 @@ Waist find_waist(const RaySet& set,
     Waist waist{0.0, 1e300};
     double weight = 0.0, start = 0.0;
     glm::dvec2 a{0}, t{0}, mean_a{0}, mean_t{0};
-    for (const std::uint32_t r : members) {
-        const double z = line(r, a, t);
-        const double w = set.rays[r].flux;
+    for (const Member& member : members) {
+        const Ray& ray = set.rays[member.ray];
+        const double z = line(ray, a, t);
+        const double w = static_cast<double>(ray.flux) * member.share;
         waist.first_start_m = std::min(waist.first_start_m, z);
         weight += w;
         start += w * z;
@@ -104,10 +137,12 @@ Waist find_waist(const RaySet& set,
     mean_a /= weight;
     mean_t /= weight;
     double covariance = 0.0, variance = 0.0;
-    for (const std::uint32_t r : members) {
-        line(r, a, t);
-        covariance += set.rays[r].flux * glm::dot(a - mean_a, t - mean_t);
-        variance += set.rays[r].flux * glm::dot(t - mean_t, t - mean_t);
+    for (const Member& member : members) {
+        const Ray& ray = set.rays[member.ray];
+        line(ray, a, t);
+        const double w = static_cast<double>(ray.flux) * member.share;
+        covariance += w * glm::dot(a - mean_a, t - mean_t);
+        variance += w * glm::dot(t - mean_t, t - mean_t);
     }
     // Tangents that differ by less than 1e-6 cross nowhere that floats could tell.
     waist.s_m = variance > 1e-12 * weight ? -covariance / variance : start / weight;
@@ -115,19 +150,20 @@ Waist find_waist(const RaySet& set,
 }
 
 std::vector<Crossing> propagate(const RaySet& set,
-                                const std::vector<std::uint32_t>& members,
+                                const std::vector<Member>& members,
                                 const Planes& planes) {
     const glm::dmat3 slab_from_file = glm::transpose(planes.file_from_slab);
     std::vector<Crossing> crossings(members.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, members.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const Ray& ray = set.rays[members[i]];
+            const Member& member = members[i];
+            const Ray& ray = set.rays[member.ray];
             const glm::dvec3 p = slab_from_file * glm::dvec3(ray.position_m);
             const glm::dvec3 d = slab_from_file * glm::dvec3(ray.direction);
             const glm::dvec2 tangent = glm::dvec2(d) / d.z;
             crossings[i] = {glm::vec2(glm::dvec2(p) + tangent * (planes.u_m - p.z)),
-                            glm::vec2(glm::dvec2(p) + tangent * (planes.s_m - p.z)), ray.flux,
-                            members[i]};
+                            glm::vec2(glm::dvec2(p) + tangent * (planes.s_m - p.z)),
+                            ray.flux * member.share, member.share, member.ray};
         }
     });
     return crossings;

@@ -42,7 +42,7 @@ void scale_to(RaySet& set, double total) {
 std::string summary(const RaySet& set, const ConvertReport& report) {
     const char* u = unit(set);
     std::string text = fmt::format(
-        "{} rays, {:.6g} {}; kept {:.6g} +- {:.2g} {}; dropped {:.4g} {} ({:.3f} %, {} rays): "
+        "{} rays, {:.6g} {}; kept {:.6g} +- {:.2g} {}; dropped {:.4g} {} ({:.3f} %, {:.0f} rays): "
         "{:.4g} by direction, {:.4g} beside S, {:.4g} beside U\n",
         report.rays_in, report.flux_in, u, report.flux_out, report.sigma_flux, u, report.dropped(),
         u, 100.0 * report.dropped() / report.flux_in, report.rays_dropped, report.dropped_direction,
@@ -83,7 +83,7 @@ Provenance describe(const RaySet& set,
                  {"keep_radiometric", read.keep_radiometric ? "true" : "false"}};
     const std::string u = set.quantity == Quantity::Photometric ? "_lm" : "_w";
     p.figures = {{"rays", static_cast<double>(report.rays_in)},
-                 {"rays_dropped", static_cast<double>(report.rays_dropped)},
+                 {"rays_dropped", report.rays_dropped},
                  {"flux_of_rays_in_file" + u, set.flux_of_rays},
                  {"flux_in" + u, report.flux_in},
                  {"flux_out" + u, report.flux_out},

@@ -185,7 +185,10 @@ TexelFlux smooth_flux(const std::vector<Crossing>& crossings,
     for (const Crossing& c : crossings) {
         const std::size_t t = grid.index(c.s_m);
         flux[t] += c.flux;
-        variance[t] += static_cast<double>(c.flux) * c.flux;  // Poisson: the sum of squared weights
+        // Poisson: the sum of squared weights. A ray's parts in several slabs rise and fall
+        // together: its square is shared out as its flux, so that added up as if parts were
+        // independent it is the ray's.
+        variance[t] += static_cast<double>(c.flux) * c.flux / c.share;
     }
     return {smooth(flux, grid.texels, kernel_texels), smooth(variance, grid.texels, kernel_texels),
             smooth(variance, grid.texels, kernel_texels, true)};

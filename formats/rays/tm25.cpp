@@ -330,6 +330,22 @@ void scale_to_header(const Header& header,
         ray.flux = static_cast<float>(ray.flux * scale);
 }
 
+// Compares what the header promises with the file's size, before anything is allocated for it.
+void check_length(const ByteReader& file, const Header& header, std::uint64_t row_bytes) {
+    const std::uint64_t whole_rays = file.remaining() / row_bytes;
+    if (header.ray_count == 0)
+        throw Error{"ray file without rays", file.at(20), ">= 1 ray", "0"};
+    if (whole_rays < header.ray_count)
+        throw Error{"ray file is truncated",
+                    fmt::format("{}, ray {}", file.at(file.size()), whole_rays),
+                    fmt::format("{} rays of {} bytes", header.ray_count, row_bytes),
+                    fmt::format("{} whole rays", whole_rays)};
+    if (file.remaining() != header.ray_count * row_bytes)
+        throw Error{"ray file is longer than its header says",
+                    file.at(header.data_byte + header.ray_count * row_bytes), "the end of the file",
+                    fmt::format("{} more bytes", file.remaining() - header.ray_count * row_bytes)};
+}
+
 }  // namespace
 
 double flux(const RaySet& set) {
@@ -343,21 +359,8 @@ RaySet read_tm25(const std::string& path, const ReadOptions& options) {
     ByteReader file(path);
     const Header header = read_header(file, path);
     const Columns columns(header);
-
-    // Compare what the header promises with the file's size before allocating anything for it.
     const std::uint64_t row_bytes = columns.count * sizeof(float);
-    const std::uint64_t whole_rays = file.remaining() / row_bytes;
-    if (header.ray_count == 0)
-        throw Error{"ray file without rays", file.at(20), ">= 1 ray", "0"};
-    if (whole_rays < header.ray_count)
-        throw Error{"ray file is truncated",
-                    fmt::format("{}, ray {}", file.at(file.size()), whole_rays),
-                    fmt::format("{} rays of {} bytes", header.ray_count, row_bytes),
-                    fmt::format("{} whole rays", whole_rays)};
-    if (file.remaining() != header.ray_count * row_bytes)
-        throw Error{"ray file is longer than its header says",
-                    file.at(header.data_byte + header.ray_count * row_bytes), "the end of the file",
-                    fmt::format("{} more bytes", file.remaining() - header.ray_count * row_bytes)};
+    check_length(file, header, row_bytes);
 
     RaySet set;
     set.rays.reserve(header.ray_count);

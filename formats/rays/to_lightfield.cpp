@@ -29,16 +29,27 @@ constexpr double kTrimBox = 1e-4;
 constexpr double kWorthASlab = 0.01;
 // Cross-validation on more rays than this costs time and changes little.
 constexpr std::size_t kMostRaysToChoose = 400000;
-// Coefficients a slab may have at most (1 GiB as floats).
+// Coefficients a slab and channel may have at most: 1 GiB as floats, and as much for their sigma.
 constexpr double kMostCoefficients = 268435456.0;
 
 const std::vector<glm::vec3> kNoColors;
 
+// Refuses more coefficients than a slab may have, with the memory they would take.
+void check_count(glm::ivec2 grid, glm::ivec2 texels, const std::string& where) {
+    const glm::dvec2 across = glm::dvec2(grid) * glm::dvec2(texels);
+    const double count = across.x * across.y;
+    if (count > kMostCoefficients)
+        throw Error{"too many coefficients", where, "grid times texels at most 268 million",
+                    fmt::format("{}x{} images of {}x{} texels: {:.0f} million, {:.1f} GiB of "
+                                "memory a slab and channel",
+                                grid.x, grid.y, texels.x, texels.y, 1e-6 * count,
+                                count * 2 * sizeof(float) / (1 << 30))};
+}
+
 // Which rays go to which slab.
 struct Members {
-    std::array<std::vector<std::uint32_t>, 6> of_slab;
-    double dropped_flux = 0;
-    std::size_t dropped_rays = 0;
+    std::array<std::vector<Member>, 6> of_slab;
+    double dropped_flux = 0, dropped_rays = 0;
 };
 
 // Slanting more than this, a ray reaches planes a metre apart a kilometre aside.
@@ -48,13 +59,17 @@ Members share_out_directions(const RaySet& set, int slab_count) {
     Members members;
     for (std::size_t r = 0; r < set.rays.size(); ++r) {
         const glm::vec3 direction = set.rays[r].direction;
-        const std::optional<int> slab = slab_of(direction, slab_count);
-        if (slab && !(slab_count == 1 && direction.z < kLeastCosine)) {
-            members.of_slab[static_cast<std::size_t>(*slab)].push_back(
-                static_cast<std::uint32_t>(r));
-        } else {
+        const std::array<float, 6> shares = slab_shares(direction, slab_count);
+        const bool too_slanting = slab_count == 1 && direction.z < kLeastCosine;
+        bool taken = false;
+        for (std::size_t s = 0; s < shares.size() && !too_slanting; ++s)
+            if (shares[s] > 0.0F) {
+                members.of_slab[s].push_back({static_cast<std::uint32_t>(r), shares[s]});
+                taken = true;
+            }
+        if (!taken) {
             members.dropped_flux += set.rays[r].flux;
-            ++members.dropped_rays;
+            members.dropped_rays += 1.0;
         }
     }
     return members;
@@ -63,7 +78,7 @@ Members share_out_directions(const RaySet& set, int slab_count) {
 int choose_slab_count(const RaySet& set) {
     std::array<double, 6> of_axis{};
     for (const Ray& ray : set.rays)
-        of_axis[static_cast<std::size_t>(slab_of(ray.direction, 6).value())] += ray.flux;
+        of_axis[static_cast<std::size_t>(dominant_slab(ray.direction))] += ray.flux;
     double total = 0.0;
     for (const double f : of_axis)
         total += f;
@@ -74,7 +89,7 @@ int choose_slab_count(const RaySet& set) {
 
 // Planes of one slab: as asked for, or S at the waist and U behind everything.
 Planes choose_planes(const RaySet& set,
-                     const std::vector<std::uint32_t>& members,
+                     const std::vector<Member>& members,
                      int slab,
                      const ConvertOptions& options,
                      double trim) {
@@ -98,17 +113,20 @@ Planes choose_planes(const RaySet& set,
     return planes;
 }
 
-// Removes the crossings outside the rectangle; returns their flux.
+// Removes the crossings outside the rectangle; adds their parts of rays to `rays` and returns their
+// flux.
 template <typename Coordinate>
 double drop_outside(std::vector<Crossing>& crossings,
                     const Rectangle& rectangle,
-                    const Coordinate& coordinate) {
+                    const Coordinate& coordinate,
+                    double& rays) {
     double dropped = 0.0;
     const auto outside = [&](const Crossing& c) {
         const glm::dvec2 x(coordinate(c));
         const bool inside = x.x >= rectangle.min_m.x && x.x < rectangle.max_m.x &&
                             x.y >= rectangle.min_m.y && x.y < rectangle.max_m.y;
         dropped += inside ? 0.0 : static_cast<double>(c.flux);
+        rays += inside ? 0.0 : static_cast<double>(c.share);
         return !inside;
     };
     crossings.erase(std::remove_if(crossings.begin(), crossings.end(), outside), crossings.end());
@@ -201,7 +219,8 @@ void fill(Slab& slab,
         if (!(flux.flux[t] > 0.0))
             return;
         const auto width = static_cast<std::size_t>(slab.texels.x);
-        const glm::dvec2 texel(static_cast<double>(t % width), static_cast<double>(t / width));
+        const std::size_t column = t % width, row = t / width;
+        const glm::dvec2 texel(static_cast<double>(column), static_cast<double>(row));
         const std::vector<double> shares =
             shares_of_texel(fits, slab.s_min_m + (texel + 0.5) * grid.size_m());
         for (std::size_t m = 0; m < images; ++m) {
@@ -241,6 +260,28 @@ void describe(SlabReport& report, const Planes& planes, const Slab& slab, const 
     report.sigma_texel_rel = report.flux > 0.0 ? sigma / report.flux : 0.0;
 }
 
+// What crosses a slab's rectangles on both planes.
+struct Crossings {
+    std::vector<Crossing> crossings;
+    Rectangle s, u;
+};
+
+// Follows the rays to the planes and bounds them there. Adds what is dropped to `total`.
+Crossings cross(const RaySet& set,
+                const std::vector<Member>& members,
+                const Planes& planes,
+                double trim,
+                ConvertReport& total) {
+    std::vector<Crossing> crossings = propagate(set, members, planes);
+    const Rectangle s = bound_s(crossings, trim);
+    total.dropped_s += drop_outside(
+        crossings, s, [](const Crossing& c) { return c.s_m; }, total.rays_dropped);
+    const Rectangle u = bound_u(crossings, trim);
+    total.dropped_u += drop_outside(
+        crossings, u, [](const Crossing& c) { return c.u_m; }, total.rays_dropped);
+    return {std::move(crossings), s, u};
+}
+
 struct Part {
     Slab slab;
     SlabReport report;
@@ -249,35 +290,29 @@ struct Part {
 
 // One slab from its rays. Adds what is dropped to `total`.
 Part convert_slab(const RaySet& set,
-                  const std::vector<std::uint32_t>& members,
+                  const std::vector<Member>& members,
                   int index,
                   const Planes* first,
                   const ConvertOptions& options,
                   double trim,
                   ConvertReport& total) {
     Part part;
-    const char* axis = kAxisNames[static_cast<std::size_t>(index)];
-    part.report.axis = axis;
+    part.report.axis = kAxisNames[static_cast<std::size_t>(index)];
     part.planes = choose_planes(set, members, index, options, trim);
-    std::vector<Crossing> crossings = propagate(set, members, part.planes);
-    const Rectangle s = bound_s(crossings, trim);
-    total.dropped_s += drop_outside(crossings, s, [](const Crossing& c) { return c.s_m; });
-    const Rectangle u = bound_u(crossings, trim);
-    total.dropped_u += drop_outside(crossings, u, [](const Crossing& c) { return c.u_m; });
-    total.rays_dropped += members.size() - crossings.size();
+    const auto [crossings, s, u] = cross(set, members, part.planes, trim, total);
     if (crossings.empty())
-        throw Error{"no ray crosses a slab's rectangles", fmt::format("slab {}", axis)};
+        throw Error{"no ray crosses a slab's rectangles", "slab " + part.report.axis};
     part.report.rays = crossings.size();
 
     const Profile profile = model::make_profile(options.basis);
     const std::vector<Crossing> some = thin(crossings, options.seed);
     part.report.texels = choose_texels(some, s, options.texels, options.seed);
+    if (options.grid)
+        check_count(*options.grid, part.report.texels.texels, "slab " + part.report.axis);
     part.report.directions = choose_directions(some, s, u, profile, options.grid, options.seed);
     const TexelGrid grid{s, part.report.texels.texels};
     const Aperture aperture = cover(profile, u, part.report.directions.grid);
-    if (static_cast<double>(grid.count()) * aperture.image_count() > kMostCoefficients)
-        throw Error{"too many coefficients", fmt::format("slab {}", axis),
-                    "grid * texels below 268 million"};
+    check_count(aperture.grid, grid.texels, "slab " + part.report.axis);
 
     const TexelFlux flux = smooth_flux(crossings, grid, part.report.texels.kernel_texels);
     const std::vector<glm::vec3>& colors = options.color ? set.colors : kNoColors;
@@ -301,6 +336,9 @@ void check(const ConvertOptions& options) {
     if (options.texels && (options.texels->x < 1 || options.texels->y < 1))
         throw Error{"bad number of texels", "--texels", "at least 1x1",
                     fmt::format("{}x{}", options.texels->x, options.texels->y)};
+    // The least that what is given asks for: an automatic grid has one pitch or more.
+    check_count(options.grid.value_or(glm::ivec2(n)), options.texels.value_or(glm::ivec2(1)),
+                "--grid, --texels");
     for (const auto& plane : {options.u_plane_mm, options.s_plane_mm})
         if (plane && !std::isfinite(*plane))
             throw Error{"bad plane", "--u-plane-mm, --s-plane-mm", "a finite number"};
@@ -326,10 +364,10 @@ Conversion to_lightfield(const RaySet& set, const ConvertOptions& options) {
     std::optional<Planes> first;
     double done = 0.0;
     for (int s = 0; s < slab_count; ++s) {
-        const std::vector<std::uint32_t>& rays = members.of_slab[static_cast<std::size_t>(s)];
+        const std::vector<Member>& rays = members.of_slab[static_cast<std::size_t>(s)];
         double slab_flux = 0.0;
-        for (const std::uint32_t r : rays)
-            slab_flux += set.rays[r].flux;
+        for (const Member& member : rays)
+            slab_flux += static_cast<double>(set.rays[member.ray].flux) * member.share;
         if (!(slab_flux > 0.0))
             continue;
         Part part = convert_slab(set, rays, s, first ? &*first : nullptr, options, trim, report);
@@ -338,9 +376,9 @@ Conversion to_lightfield(const RaySet& set, const ConvertOptions& options) {
         report.flux_out += part.report.flux;
         report.slabs.push_back(std::move(part.report));
         result.lightfield.slabs.push_back(std::move(part.slab));
-        done += static_cast<double>(rays.size());
+        done += slab_flux;
         if (options.progress)
-            options.progress(done / static_cast<double>(set.rays.size() - members.dropped_rays));
+            options.progress(done / (report.flux_in - report.dropped_direction));
     }
     double squares = 0.0;
     for (const Ray& ray : set.rays)

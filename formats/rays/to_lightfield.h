@@ -22,8 +22,8 @@ struct ConvertOptions {
     std::optional<double> u_plane_mm, s_plane_mm;
     std::optional<glm::ivec2> grid;    // W x H of every slab; more: sharper directions, more noise
     std::optional<glm::ivec2> texels;  // w x h of every slab; more: sharper places, more noise
-    /// 1: directions with z > 0; 5: shared out by dominant axis but -z; 6: all. Default: the fewest
-    /// that lose < 1 %.
+    /// 1: directions with z > 0; 5: all but those that go mainly towards -z; 6: all. Several slabs
+    /// share directions out by slab_shares. Default: the fewest that lose < 1 %.
     std::optional<int> slabs;
     std::string basis = "bspline";
     bool color = true;       // R, G, B where the rays have color; else one channel Y
@@ -38,8 +38,8 @@ void check(const ConvertOptions& options);
 constexpr double kMostDropped = 0.02;
 
 struct SlabReport {
-    std::string axis;  // "+z", "+x", ...
-    std::size_t rays = 0;
+    std::string axis;      // "+z", "+x", ...
+    std::size_t rays = 0;  // whole or in part
     double flux = 0;
     double u_plane_mm = 0, s_plane_mm = 0;  // along the axis, from the ray file's origin
     TexelChoice texels;
@@ -52,8 +52,9 @@ struct SlabReport {
 struct ConvertReport {
     double flux_in = 0, flux_out = 0;  // lm or W
     double dropped_direction = 0, dropped_u = 0, dropped_s = 0;
-    std::size_t rays_in = 0, rays_dropped = 0;
-    double sigma_flux = 0;  // of flux_out, from the number of rays
+    std::size_t rays_in = 0;
+    double rays_dropped = 0;  // a ray whose part in one slab is dropped counts by that part
+    double sigma_flux = 0;    // of flux_out, from the number of rays
     std::vector<SlabReport> slabs;
 
     double dropped() const { return dropped_direction + dropped_u + dropped_s; }
@@ -71,10 +72,12 @@ struct Conversion {
 /// Out     slabs in the luminaire's frame: the ray file's, moved along z so that the first slab's S
 /// is at z = 0.
 ///         Irradiance weighting. Sum over images of coefficient times integral = flux of the rays
-///         kept. sigma: for windows wider than the smoothing it is the rays' Poisson error, for
-///         narrower ones an upper bound.
+///         kept. sigma: for windows wider than the smoothing it is the rays' Poisson error, before
+///         the lamp an upper bound, and up to a third too small far away, where a window is one
+///         pitch (docs/ray_files.md, "Sigma"). A ray that slabs share gives each as much of its
+///         variance as of its flux, so that whoever sees all of it sees the variance of one ray.
 /// Throws  Error on an option out of range, and where a slab's rays do not allow planes.
-/// Cost    O(rays); 24 bytes a ray of one slab at a time beside the light field.
+/// Cost    O(rays); 28 bytes a ray of one slab at a time beside the light field.
 Conversion to_lightfield(const RaySet& set, const ConvertOptions& options);
 
 }  // namespace nearfield::rays

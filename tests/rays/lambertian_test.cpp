@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,35 +21,51 @@ using test::kFlux_lm;
 using test::kRadius_m;
 using test::quick;
 
+// Intensity of a light field over a Lambertian disk's, mean over 24 azimuths.
+double relative_intensity(const LightField& lightfield, double angle_deg) {
+    const double t = angle_deg * pi / 180;
+    double mean = 0.0;
+    for (int k = 0; k < 24; ++k) {
+        const double p = 2 * pi * (k + 0.5) / 24;
+        mean +=
+            model::luminance(model::intensity(
+                lightfield, {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)})) /
+            24;
+    }
+    return mean / (kFlux_lm / pi * std::cos(t));
+}
+
 // Proves that a Lambertian disk comes out as one: intensity I0 cos, I0 = flux / pi, and on the axis
-// E(d) = flux / (pi (R^2 + d^2)), from nearly touching to far, with all five slabs at work.
+// E(d) = flux / (pi (R^2 + d^2)), from nearly touching to far, with all five slabs at work and
+// across the seam between them at 45 degrees. Single azimuths are noisier than the mean over them.
 TEST(ToLightfield, ReproducesALambertianDisk) {
-    const rays::Conversion c = rays::to_lightfield(disk(60000, 2), quick());
-    const double z0_m = c.report.slabs.front().s_plane_mm * 1e-3;
-    EXPECT_NEAR(z0_m, kDisk_z_m, 2e-5);  // the waist is the disk, within the rays' noise
-    // Blur by the pitch, here 19 degrees, shifts the mean over six ray sets by up to 6.5 % (at 35
-    // degrees, where the slabs' edges at 45 blur inwards; 0.8 % there at a pitch of 10 degrees).
-    // Noise between sets: 0.3 to 1.3 % (a basis function counts 8000 rays: 1.1 %). The largest sum
-    // of shift and 3 sigma is 7.9 %.
-    constexpr double kTolerance = 0.08;
-    for (const double distance_m : {5e-4, 2e-3, 1e-2, 1.0}) {
-        const double exact = kFlux_lm / (pi * (kRadius_m * kRadius_m + distance_m * distance_m));
-        EXPECT_NEAR(illuminance(c.lightfield, {0, 0, kDisk_z_m - z0_m + distance_m}) / exact, 1.0,
-                    kTolerance)
-            << distance_m;
-    }
-    for (const double angle_deg : {0.0, 20.0, 35.0, 65.0, 75.0}) {
-        double mean = 0.0;
-        for (int k = 0; k < 24; ++k) {
-            const double t = angle_deg * pi / 180, p = 2 * pi * (k + 0.5) / 24;
-            mean += model::luminance(model::intensity(
-                        c.lightfield,
-                        {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)})) /
-                    24;
+    constexpr int kSets = 4;
+    // Over six ray sets the means are off by at most 3.3 % (at 45 degrees, where a hard share
+    // between slabs would be 10 % low) and sets spread by 0.7 to 2.3 %: with the mean over four,
+    // 3.3 % and 2 sigma at most. Right before the disk a texel's noise is 3.5 % a set.
+    constexpr double kTolerance = 0.05, kNearTolerance = 0.06;
+    constexpr std::array kDistances_m = {5e-4, 2e-3, 1e-2, 1.0};
+    constexpr std::array kAngles_deg = {0.0, 20.0, 35.0, 40.0, 45.0, 50.0, 65.0, 75.0};
+    std::array<double, kDistances_m.size()> near{};
+    std::array<double, kAngles_deg.size()> far{};
+    rays::ConvertOptions options = quick();
+    options.grid = glm::ivec2(15);  // a pitch of 11 degrees
+    for (std::uint64_t set = 0; set < kSets; ++set) {
+        const rays::Conversion c = rays::to_lightfield(disk(60000, 2 + set), options);
+        const double z0_m = c.report.slabs.front().s_plane_mm * 1e-3;
+        EXPECT_NEAR(z0_m, kDisk_z_m, 2e-5);  // the waist is the disk, within the rays' noise
+        for (std::size_t k = 0; k < near.size(); ++k) {
+            const double d_m = kDistances_m[k];
+            near[k] += illuminance(c.lightfield, {0, 0, kDisk_z_m - z0_m + d_m}) *
+                       (pi * (kRadius_m * kRadius_m + d_m * d_m)) / kFlux_lm / kSets;
         }
-        EXPECT_NEAR(mean / (kFlux_lm / pi * std::cos(angle_deg * pi / 180)), 1.0, kTolerance)
-            << angle_deg;
+        for (std::size_t k = 0; k < far.size(); ++k)
+            far[k] += relative_intensity(c.lightfield, kAngles_deg[k]) / kSets;
     }
+    for (std::size_t k = 0; k < near.size(); ++k)
+        EXPECT_NEAR(near[k], 1.0, kNearTolerance) << kDistances_m[k] << " m";
+    for (std::size_t k = 0; k < far.size(); ++k)
+        EXPECT_NEAR(far[k], 1.0, kTolerance) << kAngles_deg[k] << " degrees";
 }
 
 // Proves poses and rotations of all slabs: light that goes out evenly from a small ball off the
@@ -80,8 +97,10 @@ TEST(ToLightfield, SixSlabsPointTheRightWay) {
     }
 }
 
-// Proves that sigma predicts the spread over independent ray sets: right where a receiver sees
-// windows wider than the smoothing, and not below the truth anywhere.
+// Proves that sigma is of the size of the spread over independent ray sets, between half of it and
+// six times it, and exact for the flux, rays shared by slabs included. Not that it is never too
+// small: far away, where a window is one pitch and neighboring images' errors are not independent,
+// 0.7 of the spread is seen.
 TEST(ToLightfield, SigmaPredictsTheSpreadOverRaySets) {
     const std::vector<glm::dvec3> receivers = {{0, 0, 1e-3},       {1e-3, 0, 2e-3}, {0, 0, 5e-3},
                                                {5e-3, 2e-3, 5e-3}, {0, 0, 0.1},     {0.05, 0, 0.1}};
@@ -102,7 +121,8 @@ TEST(ToLightfield, SigmaPredictsTheSpreadOverRaySets) {
                 model::irradiance_sigma_y(c.lightfield, {receivers[r], {0, 0, -1}}) / kSets;
         }
         flux_sigma = model::flux_sigma_y(c.lightfield);
-        EXPECT_NEAR(flux_sigma, kFlux_lm / std::sqrt(20000.0), 0.1 * kFlux_lm / std::sqrt(20000.0));
+        // All rays are equal, and under 0.1 % are dropped.
+        EXPECT_NEAR(flux_sigma / (kFlux_lm / std::sqrt(20000.0)), 1.0, 1e-3);
     }
     for (std::size_t r = 0; r < receivers.size(); ++r) {
         const double spread = std::sqrt((squares[r] - sum[r] * sum[r]) * kSets / (kSets - 1));

@@ -3,12 +3,14 @@
 
 #include "formats/files/error.h"
 #include "formats/model/luminaire.h"
+#include "formats/rays/planes.h"
 #include "tests/rays/disk.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +41,46 @@ TEST(ToLightfield, ConservesFlux) {
     }
 }
 
+// Proves that slabs' parts of a direction add up to one, end near the slab's edge, pass smoothly
+// and are equal where axes are equally dominant. Not what that does to light: lambertian_test.cpp.
+TEST(SlabShares, AddUpToOneAndPassSmoothly) {
+    constexpr int kSteps = 20000;
+    std::array<float, 6> before{};
+    for (int k = 0; k <= kSteps; ++k) {
+        // A spiral from pole to pole, 20 turns: 0.36 degrees or less a step.
+        const double t = pi * k / kSteps, p = 40 * pi * k / kSteps;
+        const glm::vec3 d(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
+        const std::array<float, 6> shares = rays::slab_shares(d, 6);
+        float sum = 0.0F;
+        for (std::size_t s = 0; s < 6; ++s) {
+            const glm::vec3 axis(rays::file_from_slab(static_cast<int>(s))[2]);
+            EXPECT_GE(shares[s], 0.0F);
+            // Where its component is 0.84 of both others, 59.3 degrees from its axis, a slab ends.
+            const bool is_near = glm::dot(d, axis) > std::cos(glm::radians(59.5F));
+            EXPECT_TRUE(is_near || shares[s] == 0.0F) << k;
+            // Steepest is 1.5 over the band's 10 degrees, 0.054 a step; twice that in corners.
+            EXPECT_TRUE(k == 0 || std::abs(shares[s] - before[s]) < 0.11F) << k;
+            sum += shares[s];
+        }
+        EXPECT_NEAR(sum, 1.0F, 1e-6F);
+        before = shares;
+    }
+    const auto corner = rays::slab_shares(glm::normalize(glm::vec3(-1, 1, 1)), 6);
+    for (const std::size_t s : {0U, 2U, 3U})
+        EXPECT_NEAR(corner[s], 1.0F / 3.0F, 1e-6F);
+    EXPECT_NEAR(rays::slab_shares(glm::normalize(glm::vec3(1, 0, 1)), 6)[1], 0.5F, 1e-6F);
+}
+
+// Proves that without a slab towards -z the others take what they share with it whole, up to where
+// -z dominates, and nothing beyond.
+TEST(SlabShares, GiveWhatNobodyTakesToTheOthersWhereTheyDominate) {
+    const glm::vec3 down_a_little = glm::normalize(glm::vec3(1, 0, -0.99)),
+                    down = glm::normalize(glm::vec3(0.99, 0, -1));
+    EXPECT_GT(rays::slab_shares(down_a_little, 6)[5], 0.4F);
+    EXPECT_EQ(rays::slab_shares(down_a_little, 5)[1], 1.0F);
+    EXPECT_EQ(rays::slab_shares(down, 5), (std::array<float, 6>{}));
+}
+
 // Proves that where on its way a ray starts does not matter: rays that start beyond the planes are
 // followed backwards.
 TEST(ToLightfield, FollowsRaysBackwards) {
@@ -64,7 +106,7 @@ TEST(ToLightfield, CountsWhatItDrops) {
     const double ray_lm = kFlux_lm / 10000;
     EXPECT_NEAR(c.report.dropped_direction, 1000 * ray_lm,
                 50 * ray_lm);  // and a few along the plane
-    EXPECT_GE(c.report.rays_dropped, 1000U);
+    EXPECT_GE(c.report.rays_dropped, 1000.0);
     EXPECT_FALSE(c.report.is_good_enough());
     options.slabs = 6;
     const rays::Conversion box = rays::to_lightfield(set, options);
@@ -83,7 +125,9 @@ TEST(ToLightfield, UnequalRaysCountByTheirSquares) {
         squares += static_cast<double>(set.rays[r].flux) * set.rays[r].flux;
     }
     const rays::Conversion c = rays::to_lightfield(set, quick());
-    EXPECT_NEAR(model::flux_sigma_y(c.lightfield) / std::sqrt(squares), 1.0, 0.05);
+    // Four fifths of the variance come from 2000 rays, of which few are dropped: 1 %. Counting a
+    // shared ray as two would give 2 % less.
+    EXPECT_NEAR(model::flux_sigma_y(c.lightfield) / std::sqrt(squares), 1.0, 0.01);
 }
 
 // Proves that color follows its rays: red from the left half, blue from the right, Y as without
@@ -128,6 +172,7 @@ TEST(ToLightfield, RefusesOptionsOutOfRange) {
     refuses([](rays::ConvertOptions& o) { o.slabs = 2; });
     refuses([](rays::ConvertOptions& o) { o.grid = glm::ivec2(2, 9); });
     refuses([](rays::ConvertOptions& o) { o.texels = glm::ivec2(0, 9); });
+    refuses([](rays::ConvertOptions& o) { o.texels = glm::ivec2(9999); });
     refuses([](rays::ConvertOptions& o) { o.basis = "sinc"; });
     refuses([](rays::ConvertOptions& o) { o.u_plane_mm = NAN; });
     refuses([](rays::ConvertOptions& o) { o.u_plane_mm = o.s_plane_mm = 1.0; });

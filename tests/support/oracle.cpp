@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/oracle.h"
 
-#include "tests/support/quadrature.h"
+#include "tests/support/oracle_pieces.h"
 #include "tests/support/random.h"
 
 #include <tbb/parallel_for.h>
@@ -12,116 +12,6 @@
 
 namespace nearfield::support {
 namespace {
-
-/// Point on S as a function of the point on U, on one axis: s = slope * u + offset_m.
-struct AxisMap {
-    double slope = 1.0, offset_m = 0.0;
-
-    double s_m(double u_m) const { return slope * u_m + offset_m; }
-    double u_m(double s_m) const { return (s_m - offset_m) / slope; }
-};
-
-/// One axis of a slab.
-struct Axis {
-    int basis_count = 0, texel_count = 0;
-    double first_center_m = 0, pitch_m = 0, s_min_m = 0, texel_m = 0;
-    const Profile* profile = nullptr;
-
-    int profile_cells() const { return static_cast<int>(profile->cells.size()); }
-    int cell_count() const { return basis_count + profile_cells() - 1; }
-    /// Lower edge on U of cell k, k = 0 ... cell_count.
-    double edge_m(int k) const { return first_center_m + (k - 0.5 * profile_cells()) * pitch_m; }
-    int texel_at(double s_m) const {
-        return static_cast<int>(
-            std::clamp(std::floor((s_m - s_min_m) / texel_m), -1.0, 1.0 * texel_count));
-    }
-    /// The basis function on its polynomial for cell k, 0 where its support leaves the cell out.
-    double phi(int basis, int k, double u_m) const {
-        const int part = k - basis;
-        if (basis < 0 || basis >= basis_count || part < 0 || part >= profile_cells())
-            return 0.0;
-        const double x = (u_m - (first_center_m + basis * pitch_m)) / pitch_m;
-        const auto& a = profile->cells[static_cast<std::size_t>(part)];
-        return a[0] + a[1] * x + a[2] * x * x;
-    }
-};
-
-Axis axis_of(const Slab& slab, int d) {
-    return {slab.grid[d],    slab.texels[d],  slab.basis_center_m(0, 0)[d],
-            slab.pitch_m[d], slab.s_min_m[d], slab.texel_m()[d],
-            &slab.profile};
-}
-
-/// An interval of U within one cell and one texel, with its quadrature nodes.
-struct Piece {
-    double low_m = 0, high_m = 0;
-    int cell = 0, texel = 0;
-    std::vector<double> u_m, weight_m;
-    std::vector<double> phi;  // [basis within the cell: cell - n + 1 ... cell][node]
-};
-
-/// Where pieces must be short: length <= half the distance to (center_m, height_m). Infinite
-/// height: anywhere.
-struct Refinement {
-    double center_m = 0, height_m = INFINITY;
-};
-
-void append_pieces(std::vector<Piece>& pieces,
-                   const Axis& axis,
-                   const AxisMap& map,
-                   const Refinement& refinement,
-                   Piece piece) {
-    if (!(piece.high_m > piece.low_m))
-        return;
-    const double middle_m = 0.5 * (piece.low_m + piece.high_m);
-    const double beside_m =
-        std::max({0.0, piece.low_m - refinement.center_m, refinement.center_m - piece.high_m});
-    if (piece.high_m - piece.low_m > 0.5 * std::hypot(beside_m, refinement.height_m)) {
-        Piece left = piece, right = piece;
-        left.high_m = right.low_m = middle_m;
-        append_pieces(pieces, axis, map, refinement, left);
-        append_pieces(pieces, axis, map, refinement, right);
-        return;
-    }
-    piece.texel = axis.texel_at(map.s_m(middle_m));
-    if (piece.texel >= 0 && piece.texel < axis.texel_count)
-        pieces.push_back(piece);
-}
-
-/// Cuts U's aperture along cells and along the texels' edges; leaves out what does not reach S's
-/// rectangle.
-std::vector<Piece> cut_axis(const Axis& axis,
-                            const AxisMap& map,
-                            const Refinement& refinement,
-                            const GaussRule& rule) {
-    std::vector<Piece> pieces;
-    for (int k = 0; k < axis.cell_count(); ++k) {
-        std::vector<double> cuts_m = {axis.edge_m(k), axis.edge_m(k + 1)};
-        const double low_m = cuts_m[0], high_m = cuts_m[1];
-        // Texels fall along U where the receiver is between the planes.
-        const int at_low = axis.texel_at(map.s_m(low_m)), at_high = axis.texel_at(map.s_m(high_m));
-        const int first = std::min(at_low, at_high), last = std::max(at_low, at_high);
-        for (int i = std::max(first, 0); i <= std::min(last + 1, axis.texel_count); ++i) {
-            const double u_m = map.u_m(axis.s_min_m + i * axis.texel_m);
-            if (u_m > low_m && u_m < high_m)
-                cuts_m.push_back(u_m);
-        }
-        std::sort(cuts_m.begin(), cuts_m.end());
-        for (std::size_t c = 0; c + 1 < cuts_m.size(); ++c)
-            append_pieces(pieces, axis, map, refinement,
-                          {cuts_m[c], cuts_m[c + 1], k, 0, {}, {}, {}});
-    }
-    for (Piece& piece : pieces) {
-        for (std::size_t q = 0; q < rule.node.size(); ++q) {
-            piece.u_m.push_back(piece.low_m + (piece.high_m - piece.low_m) * rule.node[q]);
-            piece.weight_m.push_back((piece.high_m - piece.low_m) * rule.weight[q]);
-        }
-        for (int b = piece.cell - axis.profile_cells() + 1; b <= piece.cell; ++b)
-            for (const double u_m : piece.u_m)
-                piece.phi.push_back(axis.phi(b, piece.cell, u_m));
-    }
-    return pieces;
-}
 
 /// C_m of the images whose support covers a cell, at one texel: [channel][row of images][column of
 /// images].
