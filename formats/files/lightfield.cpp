@@ -123,7 +123,9 @@ FileKind read_kind(const std::string& path) {
     return parse_kind(require_description(reader, path), path + ", " + kLuminaireAttribute);
 }
 
-Description read_lightfield_parts(exr::Reader& reader, const std::string& path) {
+Description read_lightfield_parts(exr::Reader& reader,
+                                  const std::string& path,
+                                  exr::Values accepted) {
     const std::string where = path + ", " + kLuminaireAttribute;
     Description description = parse_description(require_description(reader, path), where);
     LightField& lightfield = description.lightfield;
@@ -137,8 +139,9 @@ Description read_lightfield_parts(exr::Reader& reader, const std::string& path) 
             const auto take = [&](const char* table, std::vector<float>& values) {
                 if (is_reading)
                     resize_large(values, slab.image_offset(slab.channels, 0));
-                const exr::Atlas<float> atlas =
+                exr::Atlas<float> atlas =
                     image_atlas(part_name(k, table), slab, slab.texels, values.data());
+                atlas.values = accepted;
                 if (is_reading)
                     reader.read(atlas);
                 else

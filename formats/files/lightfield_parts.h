@@ -102,6 +102,9 @@ auto table_atlases(std::size_t slab_index, const Slab& slab, Tables& tables) {
 std::vector<exr::Atlas<const float>> lightfield_atlases(const LightField& lightfield);
 
 /// Reads a light field, everything checked against the file's size before anything is allocated.
-Description read_lightfield_parts(exr::Reader& reader, const std::string& path);
+/// `accepted`: what coefficients and sigma may be.
+Description read_lightfield_parts(exr::Reader& reader,
+                                  const std::string& path,
+                                  exr::Values accepted = exr::Values::NonNegative);
 
 }  // namespace nearfield

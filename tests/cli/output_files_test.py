@@ -10,7 +10,7 @@ import time
 
 from program import PROGRAM, POINTS_HEADER, ProgramTest, main, run, write_scene
 
-# Half a second to write and 60 MB on disk: time enough to be killed in.
+# 57 MB once packed.
 LARGE = ["--grid", "11x9", "--texels", "160x128", "--delta-m", "2.4"]
 
 
@@ -48,23 +48,62 @@ class OutputFiles(ProgramTest):
         write_scene("scene.gltf", "lamp.luminaire.exr")
         self.done("simulate", "headlight", *LARGE, "-o", "large.lightfield.exr")
         for command in (["pack", "large.lightfield.exr", "-o", "old.exr"],
-                        ["render", "scene.gltf", "-o", "old.exr", "--width", "2000"]):
+                        ["render", "scene.gltf", "-o", "old.exr", "--width", "600"]):
+            start_s = time.monotonic()
+            self.done(*command)
+            whole_s = time.monotonic() - start_s
             pathlib.Path("old.exr").write_text("old")
             pathlib.Path("old.png").write_text("old")
             before = self.files()
+            codes = []
             for number in (signal.SIGINT, signal.SIGKILL):
-                for delay_s in (0.05, 0.15, 0.3):
-                    self.interrupted(command, number, delay_s)
+                for part in (0.1, 0.4, 0.7, 0.9):
+                    codes.append(self.interrupted(command, number, part * whole_s))
                     self.assertEqual(self.files(), before)
                     if pathlib.Path("old.exr").read_bytes() != b"old":  # it was faster than the signal
                         self.done("info", "old.exr", "--verify")
                         pathlib.Path("old.exr").write_text("old")
+            self.assertIn(-signal.SIGINT, codes)
+            self.assertIn(-signal.SIGKILL, codes)
 
     def interrupted(self, command, number, delay_s):
         process = subprocess.Popen([PROGRAM, *command], stderr=subprocess.DEVNULL)
         time.sleep(delay_s)
         process.send_signal(number)
-        self.assertIn(process.wait(timeout=60), (0, -number))
+        code = process.wait(timeout=60)
+        self.assertIn(code, (0, -number))
+        return code
+
+    def test_without_unnamed_files_outputs_are_whole_all_the_same(self):
+        # A file without a name gets one through /proc. Hidden, that stands for a file system that knows no
+        # unnamed files: both make the program write under a hidden name and rename it.
+        self.make_lamp()
+        pathlib.Path("out").mkdir()
+
+        def pack_without_proc(limits):
+            return subprocess.run(["unshare", "--mount", "bash", "-c", "mount -t tmpfs none /proc && " + limits +
+                                   'exec "$0" pack lamp.lightfield.exr --reproducible -o out/lamp.exr', PROGRAM],
+                                  capture_output=True, text=True)
+
+        if subprocess.run(["unshare", "--mount", "mount", "-t", "tmpfs", "none", "/proc"],
+                          capture_output=True).returncode != 0:
+            self.skipTest("needs the right to hide /proc")
+        for _ in range(2):  # as a new file, and over an old one
+            result = pack_without_proc("")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(os.listdir("out"), ["lamp.exr"])
+        self.done("pack", "lamp.lightfield.exr", "--reproducible", "-o", "usual.exr")
+        usual = pathlib.Path("usual.exr").read_bytes()
+        self.assertEqual(pathlib.Path("out/lamp.exr").read_bytes(), usual)
+        # A full disk: the hidden file is removed.
+        full = pack_without_proc("trap '' XFSZ; ulimit -f 20; ")
+        self.assertEqual(full.returncode, 1)
+        self.assertIn("File too large", full.stderr)
+        self.assertEqual(os.listdir("out"), ["lamp.exr"])
+        # Killed while it writes: the hidden file stays, which shows that there was one; the old file is whole.
+        self.assertNotEqual(pack_without_proc("ulimit -f 20; ").returncode, 0)
+        self.assertEqual(sorted(name.split("-")[0] for name in os.listdir("out")), [".nearfield", "lamp.exr"])
+        self.assertEqual(pathlib.Path("out/lamp.exr").read_bytes(), usual)
 
     def test_a_new_file_replaces_the_old_one_with_the_usual_permissions(self):
         self.make_lamp()

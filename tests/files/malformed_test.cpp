@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Proves that broken light fields are refused with file, place, expected and got, when reading and
 // when writing.
-#include "formats/files/error.h"
 #include "formats/files/exr_file.h"
 #include "formats/files/luminaire.h"
 #include "formats/files/metadata.h"
@@ -21,16 +20,6 @@ namespace nearfield::test {
 namespace {
 
 using testing::HasSubstr;
-
-/// What reading says, "" if it succeeds.
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 std::string message_of_reading(const std::string& path) {
     return message_of([&] { read_lightfield(path); });

@@ -2,7 +2,6 @@
 // Proves that writers leave either the old file or the new one, and that pictures, point lists,
 // hashes and run records are what they say.
 #include "formats/files/atomic_file.h"
-#include "formats/files/error.h"
 #include "formats/files/image.h"
 #include "formats/files/luminaire.h"
 #include "formats/files/points.h"
@@ -16,22 +15,12 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 
 namespace nearfield::test {
 namespace {
 
 using testing::HasSubstr;
-
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 std::size_t file_count(const std::string& folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));

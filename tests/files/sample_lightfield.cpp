@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/files/sample_lightfield.h"
 
+#include "formats/files/error.h"
+
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -95,6 +97,15 @@ std::string read_bytes(const std::string& path) {
     std::ostringstream bytes;
     bytes << file.rdbuf();
     return bytes.str();
+}
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
 }
 
 }  // namespace nearfield::test

@@ -3,6 +3,9 @@
 
 #include "formats/files/luminaire.h"
 
+#include <functional>
+#include <string>
+
 namespace nearfield::test {
 
 /// How large and of which kind a made-up slab is.
@@ -24,5 +27,8 @@ LightField sample_lightfield();
 Luminaire sample_luminaire();
 
 std::string read_bytes(const std::string& path);
+
+/// What an action's Error says, "" if it succeeds.
+std::string message_of(const std::function<void()>& action);
 
 }  // namespace nearfield::test
