@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/monte_carlo.h"
 
-#include "formats/shared/rng.glsl.h"
+#include "formats/shared/philox.glsl.h"
 
 #include <cmath>
 
@@ -12,7 +12,8 @@ namespace {
 Estimate sample_slab(const Slab& slab,
                      const Receiver& receiver,
                      std::uint32_t samples,
-                     glm::uvec3 key) {
+                     glm::uvec2 counter,
+                     std::uint32_t seed) {
     const glm::dvec3 p = receiver.position_m;
     const double height = p.z + slab.delta_m;
     if (!(height > 0.0))
@@ -23,7 +24,7 @@ Estimate sample_slab(const Slab& slab,
     Estimate estimate;
     double sum_of_squares = 0.0;
     for (std::uint32_t k = 0; k < samples; ++k) {
-        const glm::uvec4 bits = shared::hash4(glm::uvec4(key, k));
+        const glm::uvec4 bits = shared::philox4x32({k, counter, 0U}, {seed, 0U});
         const glm::dvec2 u = corner + extent * glm::dvec2(bits.x * 0x1p-32, bits.y * 0x1p-32);
         const glm::dvec2 s = u + (glm::dvec2(p) - u) * (slab.delta_m / height);
         const glm::dvec3 to_u = glm::dvec3(u, -slab.delta_m) - p;
@@ -55,7 +56,7 @@ Estimate irradiance_by_sampling(const LightField& lightfield,
     std::uint32_t index = 0;
     for (const Slab& slab : lightfield.slabs) {
         const Estimate estimate =
-            sample_slab(slab, to_slab(slab, receiver), samples, {seed, stream, index++});
+            sample_slab(slab, to_slab(slab, receiver), samples, {stream, index++}, seed);
         total.value += estimate.value;
         variance += estimate.sigma_y * estimate.sigma_y;
     }

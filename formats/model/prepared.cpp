@@ -18,10 +18,6 @@
 namespace nearfield::model {
 namespace {
 
-// Widest window, in tangents, over which one node at a texel's centroid stands for 1 / (1 + t^2)^2:
-// relative error h^2 / 12 f'' / 2 < 1e-4. Wider texels go by double precision's pieces.
-constexpr float kWidestCentroidTexel = 0.015F;
-
 // What one receiver sees; p and q are the weights along x that depend on its normal.
 struct View {
     glm::vec3 normal{0.0F};
@@ -218,7 +214,7 @@ void look(const PreparedSlab& prepared, const ReceiverF& receiver, View& view) {
         return see_nothing();
     const bool kernel_varies =
         radiance_weighting &&
-        std::max(view.x.widest_texel_t, view.y.widest_texel_t) > kWidestCentroidTexel;
+        std::max(view.x.widest_texel_t, view.y.widest_texel_t) > prepared.widest_centroid_texel_t;
     view.by_pieces = kernel_varies || towards == Facing::Cut;
     if (!view.by_pieces)
         weigh_x(view, radiance_weighting);

@@ -118,27 +118,6 @@ void build_image(const Slab& slab, int m, SlabTables& tables) {
     }
 }
 
-// One mip level from the one before: [channel][m] images of `from` texels.
-MipLevel halve(const float* coeffs, glm::ivec2 from, std::size_t images) {
-    MipLevel level;
-    level.texels = (from + 1) / 2;
-    const std::size_t count = to_size(level.texels.x) * to_size(level.texels.y);
-    resize_large(level.coeffs, images * count);
-    tbb::parallel_for(std::size_t{0}, images, [&](std::size_t image) {
-        const float* fine = coeffs + image * to_size(from.x) * to_size(from.y);
-        float* coarse = level.coeffs.data() + image * count;
-        for (int j = 0; j < from.y; ++j) {
-            const float* row = fine + to_size(j) * to_size(from.x);
-            float* sums = coarse + to_size(j / 2) * to_size(level.texels.x);
-            for (std::size_t i = 0; i < to_size(from.x / 2); ++i)
-                sums[i] += 0.25F * (row[2 * i] + row[2 * i + 1]);
-            if (from.x % 2 == 1)
-                sums[from.x / 2] += 0.25F * row[from.x - 1];
-        }
-    });
-    return level;
-}
-
 void build_mips(const Slab& slab, SlabTables& tables) {
     const std::size_t images = to_size(slab.channels) * to_size(slab.image_count());
     const float* coeffs = slab.coeffs.data();
@@ -242,6 +221,26 @@ void compare_corners(const SlabTables& stored, const SlabTables& built, TableChe
 }
 
 }  // namespace
+
+MipLevel halve(const float* coeffs, glm::ivec2 from, std::size_t planes) {
+    MipLevel level;
+    level.texels = (from + 1) / 2;
+    const std::size_t count = to_size(level.texels.x) * to_size(level.texels.y);
+    resize_large(level.coeffs, planes * count);
+    tbb::parallel_for(std::size_t{0}, planes, [&](std::size_t plane) {
+        const float* fine = coeffs + plane * to_size(from.x) * to_size(from.y);
+        float* coarse = level.coeffs.data() + plane * count;
+        for (int j = 0; j < from.y; ++j) {
+            const float* row = fine + to_size(j) * to_size(from.x);
+            float* sums = coarse + to_size(j / 2) * to_size(level.texels.x);
+            for (std::size_t i = 0; i < to_size(from.x / 2); ++i)
+                sums[i] += 0.25F * (row[2 * i] + row[2 * i + 1]);
+            if (from.x % 2 == 1)
+                sums[from.x / 2] += 0.25F * row[from.x - 1];
+        }
+    });
+    return level;
+}
 
 SlabTables build_tables(const Slab& slab) {
     const std::size_t images = to_size(slab.image_count());

@@ -3,11 +3,19 @@
 
 #include "formats/files/luminaire.h"
 
+#include <glm/glm.hpp>
+
+#include <cstddef>
+
 namespace nearfield::model {
 
 /// Builds a slab's tables from its coefficients, in double, stored as documented in SlabTables.
 /// Cost    O(texels), bound by memory; parallel over images (TBB).
 SlabTables build_tables(const Slab& slab);
+
+/// One mip level from the one before: `planes` images (of all channels) of `from` texels, one after
+/// the other.
+MipLevel halve(const float* coeffs, glm::ivec2 from, std::size_t planes);
 
 /// The light field, checked, with tables for every slab unless `lean`.
 Luminaire pack(LightField lightfield, bool lean);

@@ -11,6 +11,9 @@
 // defines SHARED_NAMESPACE as shared::f64 before it includes a header; one that wants both
 // redefines it between two inclusions (a header written in `real` therefore has no include guard
 // for C++).
+//
+// A PRECISE variable is computed as written, without contraction or reordering (C++ is compiled so
+// throughout).
 #ifndef NEARFIELD_PORTABLE_GLSL_H
 #define NEARFIELD_PORTABLE_GLSL_H
 
@@ -21,6 +24,7 @@
 #include <cstdint>
 
 #define GPU_FN inline
+#define PRECISE
 #define REAL(x) static_cast<real>(x)
 #define SHARED_BEGIN namespace nearfield::SHARED_NAMESPACE {
 #define SHARED_END }
@@ -54,6 +58,7 @@ using real3 = glm::dvec3;
 #else
 
 #define GPU_FN
+#define PRECISE precise
 #define REAL(x) float(x)
 #define SHARED_BEGIN
 #define SHARED_END

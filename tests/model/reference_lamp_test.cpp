@@ -33,8 +33,7 @@ class ReferenceLamp : public ::testing::TestWithParam<ReferenceCase> {};
 std::vector<Receiver> receivers_in_float() {
     std::vector<Receiver> receivers = reference_receivers();
     for (Receiver& receiver : receivers)
-        receiver = {glm::dvec3(glm::vec3(receiver.position_m)),
-                    glm::dvec3(glm::vec3(receiver.normal))};
+        receiver = support::as_double(support::as_float(receiver));
     return receivers;
 }
 
@@ -62,8 +61,7 @@ TEST_P(ReferenceLamp, BothSumsEqualBruteForceAt300Receivers) {
         const double got = irradiance(slab, receivers[k]).x;
         EXPECT_LE(std::abs(got - expected), exact * expected)
             << "receiver " << k << ": expected " << expected << ", got " << got;
-        const ReceiverF receiver{glm::vec3(receivers[k].position_m),
-                                 glm::vec3(receivers[k].normal)};
+        const ReceiverF receiver = support::as_float(receivers[k]);
         const double got_float = irradiance(prepared, receiver).x;
         EXPECT_LE(std::abs(got_float - expected), kFloatWorst * expected)
             << "receiver " << k << ": expected " << expected << ", got " << got_float;

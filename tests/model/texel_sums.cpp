@@ -15,20 +15,6 @@ namespace {
 
 using support::Random;
 
-/// Coefficients over ten powers of ten, spread evenly in the logarithm; the upper right quarter
-/// dark but for its faintest ones, as a lamp above its cut-off line.
-Slab wide_range_slab(int size) {
-    Slab slab = dark_slab({size, size});
-    Random random{static_cast<std::uint64_t>(size)};
-    for (int j = 0; j < size; ++j)
-        for (int i = 0; i < size; ++i) {
-            const bool is_dark = i > size / 2 && j > size / 2;
-            texel(slab, 0, i, j) =
-                static_cast<float>(std::pow(10.0, random.uniform(-5.0, is_dark ? -3.0 : 5.0)));
-        }
-    return slab;
-}
-
 struct SatErrors {
     double two_floats = 0, one_float = 0;
     int boxes = 0, dark_boxes = 0;
@@ -80,6 +66,18 @@ Slab dark_slab(glm::ivec2 texels, glm::ivec2 grid, const char* profile) {
     slab.s_max_m = slab.s_min_m + glm::dvec2(texels) * glm::dvec2(1e-3, 2e-3);
     slab.profile = model::make_profile(profile);
     slab.coeffs.assign(slab.image_offset(1, 0), 0.0F);
+    return slab;
+}
+
+Slab wide_range_slab(int size) {
+    Slab slab = dark_slab({size, size});
+    Random random{static_cast<std::uint64_t>(size)};
+    for (int j = 0; j < size; ++j)
+        for (int i = 0; i < size; ++i) {
+            const bool is_dark = i > size / 2 && j > size / 2;
+            texel(slab, 0, i, j) =
+                static_cast<float>(std::pow(10.0, random.uniform(-5.0, is_dark ? -3.0 : 5.0)));
+        }
     return slab;
 }
 

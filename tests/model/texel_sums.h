@@ -20,6 +20,10 @@ Slab dark_slab(glm::ivec2 texels, glm::ivec2 grid = {1, 1}, const char* profile 
 /// Texel (i, j) of image m, one channel.
 float& texel(Slab& slab, int m, int i, int j);
 
+/// One image of size^2 texels over ten powers of ten, spread evenly in the logarithm; the upper
+/// right quarter dark but for its faintest ones, as a lamp above its cut-off line.
+Slab wide_range_slab(int size);
+
 /// Texels [x0, x1) x [y0, y1).
 struct Box {
     int x0, y0, x1, y1;

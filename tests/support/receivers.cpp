@@ -87,6 +87,14 @@ std::vector<HardReceiver> hard_receivers(const Slab& slab,
     return receivers;
 }
 
+model::ReceiverF as_float(const model::Receiver& receiver) {
+    return {glm::vec3(receiver.position_m), glm::vec3(receiver.normal)};
+}
+
+model::Receiver as_double(const model::ReceiverF& receiver) {
+    return {glm::dvec3(receiver.position_m), glm::dvec3(receiver.normal)};
+}
+
 FacingRange facing_range(const Slab& slab, const model::Receiver& receiver) {
     FacingRange range{INFINITY, -INFINITY};
     for (const double x : {-0.5, 0.5})

@@ -3,6 +3,7 @@
 
 #include "formats/files/lightfield.h"
 #include "formats/model/luminaire.h"
+#include "formats/model/prepared.h"
 
 #include <cstdint>
 #include <string>
@@ -37,6 +38,12 @@ struct HardReceiver {
 std::vector<HardReceiver> hard_receivers(const Slab& slab,
                                          double height_per_delta,
                                          std::uint64_t seed);
+
+/// A receiver as float represents it, and that one in double: one truth for both sums. Functions
+/// that are called, not inlined: where GCC 12 vectorizes glm::dvec3(glm::vec3(p)) it drops both
+/// conversions and with them the rounding.
+model::ReceiverF as_float(const model::Receiver& receiver);
+model::Receiver as_double(const model::ReceiverF& receiver);
 
 /// Smallest and largest of n . (u - p) over the rectangle on U that holds all basis functions'
 /// supports.
