@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/demo.h"
 
+#include "app/output.h"
 #include "formats/files/error.h"
 #include "formats/model/tables.h"
 #include "formats/scene/scene.h"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <thread>
 
 namespace nearfield::app {
 namespace {
@@ -20,10 +20,6 @@ constexpr const char* kLuminaireFile = "headlight.luminaire.exr";
 // One exposure for all views, as a photographer would set it: the wall in the hot spot, at 50
 // cd/m^2, is 1.7 times what the film's curve calls white, and the road a tenth of it.
 constexpr double kExposureEv = 4.6;
-
-int thread_count() {
-    return static_cast<int>(std::thread::hardware_concurrency());
-}
 
 std::string path_in(const DemoOptions& options, const std::string& name) {
     return (std::filesystem::path(options.folder) / name).string();
@@ -37,7 +33,7 @@ void run_stage(DemoResult& result, const std::string& name, const Work& work) {
     stage.name = name;
     const double start_s = now_s();
     stage.error_estimate = work();
-    const RunRecord record = finish_run(start_s, thread_count());
+    const RunRecord record = record_run(start_s);
     stage.time_s = record.time_s;
     stage.peak_memory_mib = record.peak_memory_mib;
     result.stages.push_back(stage);
@@ -60,21 +56,22 @@ void render_view(const Scene& scene,
     render::RenderOptions render_options;
     render_options.size_px = is_picture ? result.size_px : result.size_px / 2;
     render_options.camera = camera.name;
-    render_options.visibility_samples = options.quick ? 16 : 24;
+    render_options.samples = options.quick ? 16 : 24;
     render_options.samples_per_pixel = options.quick ? 1 : 4;
     DemoView view;
     view.camera = camera.name;
     run_stage(result, fmt::format("render, camera \"{}\"", camera.name), [&] {
         const double start_s = now_s();
-        render::Rendered rendered = render::render(scene, render_options, [&](double fraction) {
-            progress("render " + camera.name, fraction);
-        });
+        render::RenderHooks hooks;
+        hooks.progress = [&](const render::RenderProgress& at) {
+            progress("render " + camera.name, at.fraction);
+        };
+        render::Rendered rendered = render::render(scene, render_options, hooks);
         const std::string stem = is_picture ? "picture" : "view_" + camera.name;
         Picture& picture = rendered.picture;
         picture.provenance = render::describe(scene, render_options, rendered.report);
         if (is_picture) {
-            write_picture(picture, finish_run(start_s, thread_count()),
-                          path_in(options, "picture.exr"));
+            write_picture(picture, record_run(start_s), path_in(options, "picture.exr"));
             result.files.emplace_back("picture.exr");
         }
         render::DisplayOptions display_options;
@@ -110,8 +107,7 @@ void make_lamp(const DemoOptions& options, const DemoProgress& progress, DemoRes
         progress("pack", 0.0);
         Luminaire luminaire = model::pack(result.lamp.lightfield, false);
         luminaire.lightfield.provenance.command = "demo";
-        write_luminaire(luminaire, finish_run(now_s(), thread_count()),
-                        path_in(options, kLuminaireFile));
+        write_luminaire(luminaire, record_run(now_s()), path_in(options, kLuminaireFile));
         result.files.emplace_back(kLuminaireFile);
         return std::string("exact; tables in float from sums in double");
     });

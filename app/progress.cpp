@@ -18,7 +18,7 @@ ProgressLine::~ProgressLine() {
     finish();
 }
 
-void ProgressLine::update(double fraction) {
+void ProgressLine::update(double fraction, const std::string& state) {
     if (!visible_)
         return;
     const std::lock_guard lock(mutex_);
@@ -31,7 +31,8 @@ void ProgressLine::update(double fraction) {
     const std::string left =
         fraction > 0.02 ? fmt::format(", {:.0f} s left", elapsed * (1.0 - fraction) / fraction)
                         : "";
-    fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s{}\x1b[K", name_, 100.0 * fraction, elapsed, left);
+    fmt::print(stderr, "\r{}: {}{:3.0f} %, {:.0f} s{}\x1b[K", name_,
+               state.empty() ? "" : state + ", ", 100.0 * fraction, elapsed, left);
     std::fflush(stderr);
 }
 

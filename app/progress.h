@@ -15,8 +15,8 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// From any thread; draws ten times a second at most.
-    void update(double fraction);
+    /// From any thread; draws ten times a second at most. state: what else there is to say.
+    void update(double fraction, const std::string& state = "");
     /// Clears the line.
     void finish();
 

@@ -32,6 +32,19 @@ enum MaterialIndex {
     kPlastic
 };
 
+/// A dielectric with GGX' lobe. Color and roughness are also the core material's, for programs that
+/// do not know the extension.
+Material glossy(const std::string& name, glm::vec3 color, float roughness) {
+    Material material{name, color, 0.0F, roughness};
+    shared::Brdf brdf{};
+    brdf.kind = shared::kBrdfGgx;
+    brdf.diffuse = color;
+    brdf.specular = glm::vec3(0.04F);
+    brdf.alpha = glm::vec2(roughness * roughness);
+    material.given_brdf = brdf;
+    return material;
+}
+
 std::vector<Material> materials() {
     return {{"asphalt", glm::vec3(0.19F, 0.19F, 0.195F), 0.0F, 1.0F},
             {"paint", glm::vec3(0.80F), 0.0F, 1.0F},
@@ -40,8 +53,8 @@ std::vector<Material> materials() {
             {"plaster", glm::vec3(0.30F, 0.295F, 0.28F), 0.0F, 1.0F},
             {"plinth", glm::vec3(0.22F, 0.20F, 0.185F), 0.0F, 1.0F},
             {"red", glm::vec3(0.40F, 0.03F, 0.025F), 0.0F, 1.0F},
-            {"car paint", glm::vec3(0.08F, 0.20F, 0.42F), 0.0F, 0.45F},
-            {"window", glm::vec3(0.03F, 0.03F, 0.035F), 0.0F, 0.35F},
+            glossy("car paint", glm::vec3(0.08F, 0.20F, 0.42F), 0.45F),
+            glossy("window", glm::vec3(0.03F, 0.03F, 0.035F), 0.35F),
             {"housing", glm::vec3(0.02F), 0.0F, 1.0F},
             {"plastic", glm::vec3(0.40F), 0.0F, 1.0F}};
 }

@@ -16,7 +16,7 @@ ALLOWED = {
     "formats/shared": [],
     "formats/model": ["formats/files", "formats/shared"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
-    "formats/scene": ["formats/files"],
+    "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
     "render": ["formats"],
     "sample_data": ["formats"],

@@ -69,29 +69,47 @@ Elements elements(const tinygltf::Model& model,
             accessor.componentType};
 }
 
-}  // namespace
-
-std::vector<glm::vec3> read_vec3(const tinygltf::Model& model,
+template <typename Vector>
+std::vector<Vector> read_vectors(const tinygltf::Model& model,
                                  int accessor,
                                  const std::string& where) {
     // Beyond this the ray tracer ignores triangles.
     constexpr float kLargest = 1e9F;
 
-    const Elements source = elements(model, accessor, 3, where);
+    const Elements source =
+        elements(model, accessor, static_cast<std::size_t>(Vector::length()), where);
     if (source.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT ||
-        model.accessors[static_cast<std::size_t>(accessor)].type != TINYGLTF_TYPE_VEC3)
-        throw Error{kWhat, where, "an accessor of VEC3 of float (5126)",
+        model.accessors[static_cast<std::size_t>(accessor)].type != Vector::length())
+        throw Error{kWhat, where,
+                    fmt::format("an accessor of VEC{} of float (5126)", Vector::length()),
                     fmt::format("component type {}", source.component_type)};
-    std::vector<glm::vec3> values(source.count);
+    std::vector<Vector> values(source.count);
     for (std::size_t i = 0; i < source.count; ++i) {
-        std::memcpy(&values[i], source.data + i * source.stride, sizeof(glm::vec3));
-        for (int axis = 0; axis < 3; ++axis)
+        std::memcpy(&values[i], source.data + i * source.stride, sizeof(Vector));
+        for (int axis = 0; axis < Vector::length(); ++axis)
             if (!(std::abs(values[i][axis]) <= kLargest))
                 throw Error{kWhat, fmt::format("{}, element {}", where, i),
                             fmt::format("numbers from {:g} to {:g}", -kLargest, kLargest),
                             fmt::format("{}", values[i][axis])};
     }
     return values;
+}
+
+// read_vectors compares the library's codes with the number of components.
+static_assert(TINYGLTF_TYPE_VEC3 == 3 && TINYGLTF_TYPE_VEC4 == 4);
+
+}  // namespace
+
+std::vector<glm::vec3> read_vec3(const tinygltf::Model& model,
+                                 int accessor,
+                                 const std::string& where) {
+    return read_vectors<glm::vec3>(model, accessor, where);
+}
+
+std::vector<glm::vec4> read_vec4(const tinygltf::Model& model,
+                                 int accessor,
+                                 const std::string& where) {
+    return read_vectors<glm::vec4>(model, accessor, where);
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model,

@@ -20,6 +20,11 @@ std::vector<glm::vec3> read_vec3(const tinygltf::Model& model,
                                  int accessor,
                                  const std::string& where);
 
+/// The same of four floats.
+std::vector<glm::vec4> read_vec4(const tinygltf::Model& model,
+                                 int accessor,
+                                 const std::string& where);
+
 /// Reads an accessor of unsigned integers, each below `limit`. Throws like read_vec3.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model,
                                         int accessor,

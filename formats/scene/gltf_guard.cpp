@@ -113,7 +113,7 @@ void check_members(const json& value, const std::string& place, const std::strin
     static const std::set<std::string> indices = {
         "mesh",       "camera",     "material",   "indices",       "bufferView", "buffer",
         "byteOffset", "byteLength", "byteStride", "componentType", "count",      "scene",
-        "POSITION",   "NORMAL",     "mode",       "index"};
+        "POSITION",   "NORMAL",     "TANGENT",    "mode",          "index"};
     static const std::set<std::string> numbers = {"yfov", "aspectRatio", "metallicFactor",
                                                   "roughnessFactor"};
     for (const auto& [key, member] : value.items()) {

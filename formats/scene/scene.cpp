@@ -2,6 +2,7 @@
 #include "formats/scene/scene.h"
 
 #include "formats/files/error.h"
+#include "formats/scene/brdf_extension.h"
 
 #include <fmt/format.h>
 
@@ -10,24 +11,9 @@
 
 namespace nearfield {
 
-// glTF's metallic-roughness model has no exact Phong counterpart; this mapping keeps three things:
-// a dielectric of roughness 1 is Lambert's with the base color as albedo, a metal reflects its base
-// color without diffuse part, and diffuse + specular <= 1. alpha = roughness^2 (glTF 2.0, appendix
-// B); an exponent of 2/alpha^2 - 2 gives Phong's lobe about the half vector the width of GGX
-// (Walter et al. 2007); about the mirror direction it is a quarter.
-Reflectance reflectance(const Material& material) {
-    constexpr float kDielectricF0 = 0.04F;  // glTF 2.0, appendix B.2: index of refraction 1.5
-    constexpr float kLargestExponent =
-        1e4F;  // lobe of 0.8 degrees; narrower ones need a mirror, not samples
-
-    const float alpha = material.roughness * material.roughness;
-    const float dielectric = kDielectricF0 * (1.0F - alpha);
-    Reflectance result;
-    result.diffuse = material.base_color * ((1.0F - material.metallic) * (1.0F - dielectric));
-    result.specular = glm::mix(glm::vec3(dielectric), material.base_color, material.metallic);
-    const float half_vector_exponent = 2.0F / std::max(alpha * alpha, 1e-6F) - 2.0F;
-    result.exponent = std::min(0.25F * half_vector_exponent, kLargestExponent);
-    return result;
+shared::Brdf brdf(const Material& material) {
+    return material.given_brdf ? *material.given_brdf
+                               : gltf::default_brdf(material, shared::kBrdfPhong);
 }
 
 bool is_excluded(const Scene& scene, const LuminaireInstance& luminaire, const Instance& instance) {

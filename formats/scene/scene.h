@@ -6,30 +6,30 @@
 /// its +z. Colors  linear Rec.709.
 #pragma once
 
+#include "formats/shared/brdf.glsl.h"
+
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace nearfield {
 
-/// glTF's metallic-roughness parameters. reflectance() says what light they reflect.
+/// glTF's metallic-roughness parameters, and the BRDF that stands in their place where the file has
+/// the extension NEARFIELD_brdf.
 struct Material {
     std::string name;
     glm::vec3 base_color{0.8F};
     float metallic = 0.0F;   // 0 ... 1
     float roughness = 1.0F;  // 0 ... 1; a dielectric of roughness 1 is exactly Lambert's
+    std::optional<shared::Brdf> given_brdf = std::nullopt;
 };
 
-/// Lambert's diffuse albedo, and Phong's lobe of given weight and exponent. diffuse + specular
-/// <= 1.
-struct Reflectance {
-    glm::vec3 diffuse{0.0F};
-    glm::vec3 specular{0.0F};
-    float exponent = 0.0F;
-};
-Reflectance reflectance(const Material& material);
+/// What light the material reflects: the given BRDF, or Lambert's with Phong's lobe from the
+/// metallic-roughness parameters (docs/scenes.md, "Materials").
+shared::Brdf brdf(const Material& material);
 
 /// One glTF primitive: triangles of one material.
 struct Mesh {
@@ -38,6 +38,10 @@ struct Mesh {
     std::vector<glm::vec3> normals;  // unit length, one a position; empty: the triangles' own
     std::vector<glm::uvec3> triangles;
     int material = 0;  // index into Scene::materials
+    /// Direction of brushing, unit length, one a position; empty: frame_from_normal decides. The
+    /// local frame is frame_from_tangent(normal, tangent), both interpolated; a tangent is
+    /// transformed like an edge. Lobes are even in the frame's y: its sign does not matter.
+    std::vector<glm::vec3> tangents = {};
 };
 
 struct Instance {

@@ -2,12 +2,16 @@
 #include "formats/files/atomic_file.h"
 #include "formats/files/error.h"
 #include "formats/files/provenance.h"
+#include "formats/scene/brdf_extension.h"
+#include "formats/scene/reading.h"
 #include "formats/scene/scene.h"
 
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 namespace nearfield {
@@ -60,6 +64,14 @@ tinygltf::Mesh to_gltf(tinygltf::Model& model, const Mesh& mesh) {
         primitive.attributes["NORMAL"] =
             add_accessor(model, mesh.normals, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT,
                          mesh.normals.size(), TINYGLTF_TARGET_ARRAY_BUFFER);
+    if (!mesh.tangents.empty()) {
+        std::vector<glm::vec4> tangents;
+        for (const glm::vec3& tangent : mesh.tangents)
+            tangents.emplace_back(tangent, 1.0F);
+        primitive.attributes["TANGENT"] =
+            add_accessor(model, tangents, TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                         tangents.size(), TINYGLTF_TARGET_ARRAY_BUFFER);
+    }
     primitive.indices = add_accessor(
         model, mesh.triangles, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
         3 * mesh.triangles.size(), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
@@ -69,6 +81,31 @@ tinygltf::Mesh to_gltf(tinygltf::Model& model, const Mesh& mesh) {
     return result;
 }
 
+tinygltf::Value to_gltf(glm::vec3 numbers) {
+    tinygltf::Value::Array array;
+    for (int i = 0; i < 3; ++i)
+        array.emplace_back(static_cast<double>(numbers[i]));
+    return tinygltf::Value(array);
+}
+
+tinygltf::Value to_gltf(const shared::Brdf& brdf) {
+    const gltf::BrdfModel& model = gltf::brdf_model(brdf.kind);
+    tinygltf::Value::Object extension;
+    extension["model"] = tinygltf::Value(std::string(model.name));
+    extension["diffuse"] = to_gltf(brdf.diffuse);
+    extension["specular"] = to_gltf(brdf.specular);
+    const std::map<std::string, tinygltf::Value> shape = {
+        {"alpha", tinygltf::Value(
+                      tinygltf::Value::Array{tinygltf::Value(static_cast<double>(brdf.alpha.x)),
+                                             tinygltf::Value(static_cast<double>(brdf.alpha.y))})},
+        {"exponent", tinygltf::Value(static_cast<double>(brdf.exponent))},
+        {"cosines", to_gltf(brdf.cosines)}};
+    for (const char* member : model.shape)
+        if (member != nullptr)
+            extension[member] = shape.at(member);
+    return tinygltf::Value(extension);
+}
+
 tinygltf::Material to_gltf(const Material& material) {
     tinygltf::Material result;
     result.name = material.name;
@@ -76,6 +113,8 @@ tinygltf::Material to_gltf(const Material& material) {
     result.pbrMetallicRoughness.baseColorFactor = {color.x, color.y, color.z, 1.0};
     result.pbrMetallicRoughness.metallicFactor = static_cast<double>(material.metallic);
     result.pbrMetallicRoughness.roughnessFactor = static_cast<double>(material.roughness);
+    if (material.given_brdf)
+        result.extensions[gltf::kBrdfExtension] = to_gltf(*material.given_brdf);
     return result;
 }
 
@@ -117,8 +156,8 @@ void add_nodes(tinygltf::Model& model, const Scene& scene) {
         model.cameras.push_back(gltf_camera);
     }
     for (const LuminaireInstance& lamp : scene.luminaires)
-        add_node(model, lamp.name, lamp.world_from_luminaire).extensions["NEARFIELD_luminaire"] =
-            to_gltf(lamp);
+        add_node(model, lamp.name, lamp.world_from_luminaire)
+            .extensions[gltf::kLuminaireExtension] = to_gltf(lamp);
 }
 
 }  // namespace
@@ -140,7 +179,10 @@ void write_scene(const Scene& scene, const std::string& path, BufferPlace buffer
     }
     add_nodes(model, scene);
     if (!scene.luminaires.empty())
-        model.extensionsUsed.emplace_back("NEARFIELD_luminaire");
+        model.extensionsUsed.emplace_back(gltf::kLuminaireExtension);
+    if (std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& material) { return material.given_brdf.has_value(); }))
+        model.extensionsUsed.emplace_back(gltf::kBrdfExtension);
     if (model.buffers[0].data.empty())
         model.buffers.clear();  // lamps and cameras alone
 

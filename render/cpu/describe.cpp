@@ -11,26 +11,63 @@
 
 namespace nearfield::render {
 
-std::string summary(const RenderReport& report, glm::ivec2 size_px) {
+namespace {
+
+std::string name_of_sampler(const RenderOptions& options) {
+    return options.sampler ? model::name_of(*options.sampler) : "sum";
+}
+
+std::string passes(const RenderReport& report, const RenderOptions& options) {
+    std::string text =
+        fmt::format("{} sampler, {} pass{} of {:.4g} samples in all", name_of_sampler(options),
+                    report.passes, report.passes == 1 ? "" : "es", report.samples);
+    if (report.q > 0)
+        text += fmt::format(", q = {}{}", report.q,
+                            options.q == 0 ? " (an exact sum would take too long)" : "");
+    return text;
+}
+
+std::string goal(const RenderReport& report, const RenderOptions& options) {
+    std::string text;
+    if (options.error_rel > 0.0)
+        text += fmt::format("; error {:.2g} % of the wanted {:.2g} %, {}",
+                            100.0 * report.sampling.error_rel(), 100.0 * options.error_rel,
+                            report.is_error_reached ? "reached" : "not reached");
+    if (options.time_s > 0.0)
+        text +=
+            fmt::format("; {:.0f} of {:.0f} ms bought an error of {:.2g} %", 1e3 * report.time_s,
+                        1e3 * options.time_s, 100.0 * report.sampling.error_rel());
+    return text;
+}
+
+}  // namespace
+
+std::string summary(const RenderReport& report, const RenderOptions& options, glm::ivec2 size_px) {
+    const std::string plan =
+        options.time_s > 0.0 ? fmt::format("trials {:.2f} s, ", report.plan_s) : "";
     return fmt::format(
-        "{} x {} px; load {:.2f} s, build {:.2f} s, camera rays {:.2f} s, light sums {:.2f} s, "
-        "visibility {:.2f} s; {:.3g} M camera rays, {:.3g} M shadow rays, {:.3g} G multiply-adds; "
-        "{}{}",
-        size_px.x, size_px.y, report.load_s, report.build_s, report.camera_s, report.sums_s,
-        report.visibility_s, 1e-6 * static_cast<double>(report.camera_rays),
+        "{} x {} px; {}; load {:.2f} s, build {:.2f} s, {}camera rays {:.2f} s, light sums {:.2f} "
+        "s, samples {:.2f} s; {:.3g} M camera rays, {:.3g} M shadow rays, {:.3g} G multiply-adds; "
+        "{}{}{}",
+        size_px.x, size_px.y, passes(report, options), report.load_s, report.build_s, plan,
+        report.camera_s, report.sums_s, report.visibility_s,
+        1e-6 * static_cast<double>(report.camera_rays),
         1e-6 * static_cast<double>(report.shadow_rays), 1e-9 * report.multiply_adds,
-        summary(report.sampling),
+        summary(report.sampling), goal(report, options),
         report.has_sigma_measured ? "; with the layer sigma_measured" : "");
 }
 
 std::string summary(const Noise& noise) {
+    const std::string bias = noise.bias_mean_rel > 0.0 ? fmt::format("; bias {:.2g} % mean at most",
+                                                                     100.0 * noise.bias_mean_rel)
+                                                       : "";
     return fmt::format(
         "sampling sigma {:.2g} % mean, {:.2g} % or less on 95 % of the lit pixels, above 10 % on "
-        "{:.2g} % of them",
-        100.0 * noise.mean_rel, 100.0 * noise.p95_rel, 100.0 * noise.share_above_10_percent);
+        "{:.2g} % of them{}",
+        100.0 * noise.mean_rel, 100.0 * noise.p95_rel, 100.0 * noise.share_above_10_percent, bias);
 }
 
-Noise summarize_noise(const Layer& radiance, const Layer& sigma) {
+Noise summarize_noise(const Layer& radiance, const Layer& sigma, const Layer* bias) {
     constexpr float kFloor = 1e-3F;  // of the largest, as for relative RMS
     const auto luminance = [&](std::size_t i) {
         return shared::luminance709(
@@ -39,21 +76,25 @@ Noise summarize_noise(const Layer& radiance, const Layer& sigma) {
     float brightest = 0.0F;
     for (std::size_t i = 0; i < sigma.values.size(); ++i)
         brightest = std::max(brightest, luminance(i));
-    std::vector<double> lit;
+    std::vector<float> lit;
+    double bias_sum = 0.0;
     for (std::size_t i = 0; i < sigma.values.size(); ++i)
-        if (luminance(i) > kFloor * brightest)
-            lit.push_back(static_cast<double>(sigma.values[i] / luminance(i)));
+        if (luminance(i) > kFloor * brightest) {
+            lit.push_back(sigma.values[i] / luminance(i));
+            bias_sum += bias != nullptr ? static_cast<double>(bias->values[i] / luminance(i)) : 0.0;
+        }
     Noise noise;
     if (lit.empty())
         return noise;
     const auto count = static_cast<double>(lit.size());
-    for (const double relative : lit) {
-        noise.mean_rel += relative / count;
-        noise.share_above_10_percent += relative > 0.1 ? 1.0 / count : 0.0;
+    for (const float relative : lit) {
+        noise.mean_rel += static_cast<double>(relative) / count;
+        noise.share_above_10_percent += relative > 0.1F ? 1.0 / count : 0.0;
     }
+    noise.bias_mean_rel = bias_sum / count;
     const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.95 * count)) - 1;
     std::nth_element(lit.begin(), lit.begin() + rank, lit.end());
-    noise.p95_rel = lit[static_cast<std::size_t>(rank)];
+    noise.p95_rel = static_cast<double>(lit[static_cast<std::size_t>(rank)]);
     return noise;
 }
 
@@ -65,9 +106,17 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
                           {"height", fmt::format("{}", options.size_px.y)},
                           {"camera", options.camera},
                           {"samples-per-pixel", fmt::format("{}", options.samples_per_pixel)},
-                          {"visibility-samples", fmt::format("{}", options.visibility_samples)},
+                          {"sampler", name_of_sampler(options)},
+                          {"samples", fmt::format("{}", options.samples)},
+                          {"q", fmt::format("{}", options.q)},
+                          {"sequence", options.sequence ? model::name_of(*options.sequence) : ""},
+                          {"shift", model::name_of(options.shift)},
+                          {"error", fmt::format("{}", options.error_rel)},
                           {"seed", fmt::format("{}", options.seed)},
                           {"sigma-measured", options.sigma_measured ? "true" : "false"}};
+    if (options.time_s > 0.0)
+        provenance.options.emplace_back(
+            "time-ms", fmt::format("{} (passes and q depend on the clock)", 1e3 * options.time_s));
     std::set<std::string> seen;
     for (const LuminaireInstance& luminaire : scene.luminaires)
         if (luminaire.on && luminaire.dim > 0.0 && seen.insert(luminaire.path).second)
@@ -75,7 +124,11 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
     provenance.figures = {
         {"sampling_sigma_mean_rel", report.sampling.mean_rel},
         {"sampling_sigma_p95_rel", report.sampling.p95_rel},
-        {"sampling_sigma_share_above_10_percent", report.sampling.share_above_10_percent}};
+        {"sampling_sigma_share_above_10_percent", report.sampling.share_above_10_percent},
+        {"bias_bound_mean_rel", report.sampling.bias_mean_rel},
+        {"passes", report.passes},
+        {"samples_per_pixel_and_lamp", report.samples},
+        {"q_used", report.q}};
     return provenance;
 }
 

@@ -2,7 +2,8 @@
 #include "render/cpu/lamps.h"
 
 #include "formats/files/error.h"
-#include "formats/files/lightfield.h"
+#include "formats/files/luminaire.h"
+#include "formats/model/tables.h"
 
 #include <fmt/format.h>
 
@@ -14,30 +15,42 @@
 namespace nearfield::render {
 namespace {
 
-using PreparedSlabs = std::vector<std::shared_ptr<const model::PreparedSlab>>;
-
-struct LoadedLightField {
-    PreparedSlabs slabs;
-    std::shared_ptr<const LightField> measured;
-    Quantity quantity = Quantity::Photometric;
-};
-
 bool has_sigma(const LightField& lightfield) {
     return lightfield.scale_sigma_rel > 0.0 ||
            std::any_of(lightfield.slabs.begin(), lightfield.slabs.end(),
                        [](const Slab& slab) { return !slab.sigma.empty(); });
 }
 
-LoadedLightField load(const std::string& path, bool keep_measured) {
-    LightField lightfield = read_lightfield(path);
-    LoadedLightField loaded;
-    if (keep_measured && has_sigma(lightfield))
-        loaded.measured = std::make_shared<const LightField>(lightfield);
-    loaded.quantity = lightfield.quantity;
-    for (Slab& slab : lightfield.slabs) {
+/// Tables are read where the file holds them and built where it does not.
+Luminaire read_with_tables(const std::string& path) {
+    if (read_kind(path).kind == "luminaire")
+        return read_luminaire(path);
+    return {read_lightfield(path), {}};
+}
+
+std::shared_ptr<const LoadedLightField> load(const std::string& path, const LampNeeds& needs) {
+    Luminaire luminaire =
+        needs.tables ? read_with_tables(path) : Luminaire{read_lightfield(path), {}};
+    if (needs.tables && luminaire.tables.empty())
+        for (const Slab& slab : luminaire.lightfield.slabs)
+            luminaire.tables.push_back(model::build_tables(slab));
+    auto loaded = std::make_shared<LoadedLightField>();
+    if (needs.measured && has_sigma(luminaire.lightfield))
+        loaded->measured = luminaire.lightfield;
+    loaded->quantity = luminaire.lightfield.quantity;
+    for (std::size_t s = 0; s < luminaire.lightfield.slabs.size(); ++s) {
+        Slab& slab = luminaire.lightfield.slabs[s];
         slab.sigma.clear();
-        loaded.slabs.push_back(
-            std::make_shared<const model::PreparedSlab>(model::prepare(std::move(slab))));
+        if (needs.tables) {
+            if (needs.mips)
+                loaded->mips.push_back(model::prepare_mips(slab));
+            loaded->sampling.push_back(
+                model::prepare_sampling(std::move(slab), std::move(luminaire.tables[s])));
+        } else if (needs.mips) {
+            loaded->mips.push_back(model::prepare_mips(std::move(slab)));
+        } else {
+            loaded->prepared.push_back(model::prepare(std::move(slab)));
+        }
     }
     return loaded;
 }
@@ -50,17 +63,23 @@ glm::dmat3 rotation_from_world(const glm::dmat4& world_from_frame,
     return glm::transpose(glm::dmat3(world_from_frame)) / scale;
 }
 
-PlacedSlab place(std::shared_ptr<const model::PreparedSlab> prepared,
-                 const LuminaireInstance& luminaire) {
+PlacedSlab place(const LoadedLightField& file, std::size_t s, const LuminaireInstance& luminaire) {
     PlacedSlab placed;
-    const Rigid& pose = prepared->slab.luminaire_from_slab;
+    placed.mips = file.mips.empty() ? nullptr : &file.mips[s];
+    placed.prepared = !file.sampling.empty()   ? &file.sampling[s].prepared
+                      : placed.mips != nullptr ? &placed.mips->levels.front()
+                                               : &file.prepared[s];
+    const Rigid& pose = placed.prepared->slab.luminaire_from_slab;
     glm::dmat4 luminaire_from_slab(pose.rotation);
     luminaire_from_slab[3] = glm::dvec4(pose.translation_m, 1.0);
     placed.world_from_slab = luminaire.world_from_luminaire * luminaire_from_slab;
     placed.slab_from_world = glm::inverse(placed.world_from_slab);
     placed.slab_from_world_rotation = rotation_from_world(placed.world_from_slab, luminaire);
-    placed.prepared = std::move(prepared);
     return placed;
+}
+
+std::size_t slab_count(const LoadedLightField& file) {
+    return std::max({file.prepared.size(), file.mips.size(), file.sampling.size()});
 }
 
 /// A dot would nest layers.
@@ -111,28 +130,28 @@ class MaskBits {
 
 }  // namespace
 
-Lamps load_lamps(const Scene& scene, bool keep_measured) {
+Lamps load_lamps(const Scene& scene, const LampNeeds& needs) {
     Lamps result;
     MaskBits bits(scene);
-    std::map<std::string, LoadedLightField> files;
+    std::map<std::string, std::shared_ptr<const LoadedLightField>> files;
     std::set<std::string> names;
     for (const LuminaireInstance& luminaire : scene.luminaires) {
         if (!luminaire.on || luminaire.dim == 0.0)
             continue;
-        auto found = files.find(luminaire.path);
-        if (found == files.end())
-            found = files.emplace(luminaire.path, load(luminaire.path, keep_measured)).first;
-        if (!result.lamps.empty() && found->second.quantity != result.quantity)
+        std::shared_ptr<const LoadedLightField>& file = files[luminaire.path];
+        if (!file)
+            file = load(luminaire.path, needs);
+        if (!result.lamps.empty() && file->quantity != result.quantity)
             throw Error{"cannot mix light in lumens and in watts", luminaire.path,
                         "the other luminaires' quantity", "another"};
-        result.quantity = found->second.quantity;
+        result.quantity = file->quantity;
         Lamp lamp;
         lamp.name = layer_name(luminaire.name, names);
         lamp.dim = static_cast<float>(luminaire.dim);
         lamp.mask = bits.bit_of(luminaire);
-        for (const auto& prepared : found->second.slabs)
-            lamp.slabs.push_back(place(prepared, luminaire));
-        lamp.measured = found->second.measured;
+        lamp.file = file;
+        for (std::size_t s = 0; s < slab_count(*file); ++s)
+            lamp.slabs.push_back(place(*file, s, luminaire));
         lamp.luminaire_from_world = glm::inverse(luminaire.world_from_luminaire);
         lamp.luminaire_from_world_rotation =
             rotation_from_world(luminaire.world_from_luminaire, luminaire);

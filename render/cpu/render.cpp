@@ -3,23 +3,18 @@
 
 #include "formats/files/error.h"
 #include "formats/files/provenance.h"
-#include "render/cpu/tile.h"
+#include "render/cpu/limits.h"
+#include "render/cpu/passes.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 namespace nearfield::render {
 namespace {
-
-constexpr int kMaxExtentPx = 16384;
 
 const Camera& find_camera(const Scene& scene, const std::string& name) {
     std::string names;
@@ -52,87 +47,67 @@ Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_measured) 
         picture.layers.push_back({"lamp." + lamp.name, rgb, {}});
     if (has_measured)
         picture.layers.push_back({"sigma_measured", {"Y"}, {}});
-    const std::size_t pixels =
-        static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
-    for (Layer& layer : picture.layers)
-        layer.values.assign(pixels * layer.channels.size(), 0.0F);
     return picture;
 }
 
-/// Merges in the tiles' order, and turns time spent by all threads into shares of the wall time.
-void merge(const std::vector<TileReport>& tiles, double wall_s, RenderReport& report) {
-    double spent_s = 0.0;
-    for (const TileReport& tile : tiles) {
-        report.camera_rays += tile.camera_rays;
-        report.shadow_rays += tile.shadow_rays;
-        report.multiply_adds += static_cast<double>(tile.multiply_adds);
-        report.camera_s += tile.camera_s;
-        report.sums_s += tile.sums_s;
-        report.visibility_s += tile.visibility_s;
-    }
-    spent_s = report.camera_s + report.sums_s + report.visibility_s;
-    const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;
-    report.camera_s *= share;
-    report.sums_s *= share;
-    report.visibility_s *= share;
+void allocate(Picture& picture) {
+    const std::size_t pixels =
+        static_cast<std::size_t>(picture.size_px.x) * static_cast<std::size_t>(picture.size_px.y);
+    for (Layer& layer : picture.layers)
+        layer.values.assign(pixels * layer.channels.size(), 0.0F);
 }
 
-void render_tiles(const Frame& frame,
-                  const std::function<void(double fraction)>& progress,
-                  std::vector<TileReport>& reports) {
-    const glm::ivec2 tiles = (frame.picture.size_px + kTilePx - 1) / kTilePx;
-    reports.resize(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y));
-    std::mutex progress_mutex;
-    std::size_t done = 0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, reports.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                const int tile = static_cast<int>(t);
-                render_tile(frame, glm::ivec2(tile % tiles.x, tile / tiles.x) * kTilePx,
-                            reports[t]);
-                const std::lock_guard lock(progress_mutex);
-                ++done;
-                if (progress)
-                    progress(static_cast<double>(done) / static_cast<double>(reports.size()));
-            }
-        },
-        tbb::simple_partitioner());
+/// The layers' floats, and what finding errors and a PNG take at most besides.
+double bytes_per_pixel(const Picture& picture) {
+    double floats = 0.0;
+    for (const Layer& layer : picture.layers)
+        floats += static_cast<double>(layer.channels.size());
+    constexpr double kBesides = 32.0;
+    return 4.0 * floats + kBesides;
+}
+
+void check_memory(const Picture& picture) {
+    const double needed =
+        bytes_per_pixel(picture) * picture.size_px.x * static_cast<double>(picture.size_px.y);
+    const double available = available_memory_bytes();
+    constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+    if (needed > available)
+        throw Error{"the picture is larger than the memory that is left",
+                    fmt::format("{} x {} pixels", picture.size_px.x, picture.size_px.y),
+                    fmt::format("at most {:.1f} GiB", available / kGiB),
+                    fmt::format("{:.1f} GiB", needed / kGiB)};
+}
+
+/// Samplers other than the sum read tables, and so do glossy lobes.
+LampNeeds needs_of(const Scene& scene, const RenderOptions& options) {
+    LampNeeds needs;
+    needs.tables = options.sampler.has_value() ||
+                   std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
+                       return shared::brdf_is_glossy(
+                           brdf(scene.materials[static_cast<std::size_t>(mesh.material)]));
+                   });
+    // Within a time a coarser sum may be what fits.
+    needs.mips = !options.sampler && (options.q > 0 || options.time_s > 0.0);
+    needs.measured = options.sigma_measured;
+    return needs;
 }
 
 }  // namespace
 
-void check(const RenderOptions& options) {
-    const auto refuse = [](const char* option, const std::string& expected, int got) {
-        throw Error{"cannot render", option, expected, fmt::format("{}", got)};
-    };
-    for (int axis = 0; axis < 2; ++axis)
-        if (options.size_px[axis] < 1 - axis || options.size_px[axis] > kMaxExtentPx)
-            refuse(axis == 0 ? "width" : "height",
-                   axis == 0 ? "1 ... 16384" : "0 (automatic) ... 16384", options.size_px[axis]);
-    const int side =
-        static_cast<int>(std::lround(std::sqrt(std::max(options.samples_per_pixel, 0))));
-    if (options.samples_per_pixel < 1 || options.samples_per_pixel > 1024 ||
-        side * side != options.samples_per_pixel)
-        refuse("samples per pixel", "a square number, 1, 4, 9 ... 1024", options.samples_per_pixel);
-    if (options.visibility_samples < 2 || options.visibility_samples > 1 << 20)
-        refuse("visibility samples", "2 ... 1048576", options.visibility_samples);
-    if (options.threads < 0 || options.threads > 4096)
-        refuse("threads", "0 (all) ... 4096", options.threads);
-}
-
-Rendered render(const Scene& scene,
-                const RenderOptions& options,
-                const std::function<void(double fraction)>& progress) {
+Rendered render(const Scene& scene, const RenderOptions& options, const RenderHooks& hooks) {
     check(options);
+    RenderHooks timed = hooks;
+    if (!timed.clock_s)
+        timed.clock_s = now_s;
+    const double call_s = timed.clock_s();
     Rendered result;
     RenderReport& report = result.report;
     const Camera& camera = find_camera(scene, options.camera);
     const double start_s = now_s();
-    const Lamps lamps = load_lamps(scene, options.sigma_measured);
+    const Lamps lamps = load_lamps(scene, needs_of(scene, options));
     report.has_sigma_measured =
         std::any_of(lamps.lamps.begin(), lamps.lamps.end(),
-                    [](const Lamp& lamp) { return lamp.measured != nullptr; });
+                    [](const Lamp& lamp) { return lamp.file->measured.has_value(); });
     report.quantity = lamps.quantity;
     report.load_s = now_s() - start_s;
 
@@ -146,19 +121,22 @@ Rendered render(const Scene& scene,
 
     result.picture =
         make_picture(lamps, complete_size(options.size_px, camera), report.has_sigma_measured);
-    Frame frame{scene,  options,
-                camera, lamps,
-                tracer, result.picture,
-                {},     static_cast<int>(std::lround(std::sqrt(options.samples_per_pixel)))};
+    check_memory(result.picture);
+    allocate(result.picture);
+    Frame frame{scene, options, camera, lamps, tracer, result.picture, {}, 1, {}, {}};
+    frame.strata = static_cast<int>(std::lround(std::sqrt(options.samples_per_pixel)));
     for (const Material& material : scene.materials)
-        frame.reflectances.push_back(reflectance(material));
-    std::vector<TileReport> tiles;
-    const double tiles_start_s = now_s();
+        frame.brdfs.push_back(brdf(material));
+    if (report.has_sigma_measured)
+        frame.measured_layer = result.picture.layers.size() - 1;
     tbb::task_arena arena(threads);
-    arena.execute([&] { render_tiles(frame, progress, tiles); });
-    merge(tiles, now_s() - tiles_start_s, report);
+    arena.execute([&] { render_passes(frame, timed, call_s, report); });
     report.sampling =
-        summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma]);
+        summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma],
+                        frame.bias_layer ? &result.picture.layers[*frame.bias_layer] : nullptr);
+    report.is_error_reached =
+        !(options.error_rel > 0.0) || report.sampling.error_rel() <= options.error_rel;
+    report.time_s = timed.clock_s() - call_s;
     return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include "formats/files/provenance.h"
 #include "formats/shared/rng.glsl.h"
+#include "formats/shared/tonemap.glsl.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,10 +43,11 @@ void add(Layer& layer, std::size_t pixel, glm::vec3 value) {
 
 /// A camera ray that met something.
 struct Sample {
-    std::size_t pixel = 0;  // index in the picture
-    std::uint32_t key = 0;  // of its random numbers
+    glm::ivec2 pixel{0};
+    std::size_t index = 0;  // of the pixel in the picture
     glm::dvec3 direction{0.0};
-    Reflectance reflectance;
+    const shared::Brdf* brdf = nullptr;
+    shared::SurfaceFrame frame;
 };
 
 /// What a block's steps hand each other; kept from block to block for its memory.
@@ -54,14 +56,22 @@ struct Block {
     std::vector<Hit> hits;  // [sample]
     LightSums sums;
     Scratch scratch;
-    // Variance of radiance Y, [sample], and sigma_measured's, lamps of one file next to each other.
-    std::vector<float> variance, measured;
 };
 
-/// One camera ray a pixel, and the layers that need no light.
-void trace_camera(
-    const Frame& frame, glm::ivec2 first, glm::ivec2 last, int stratum, Block& block) {
-    const int samples = frame.strata * frame.strata;
+std::size_t index_of(const Frame& frame, glm::ivec2 pixel) {
+    return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(frame.picture.size_px.x) +
+           static_cast<std::size_t>(pixel.x);
+}
+
+/// One camera ray a pixel, the same ones in every pass, and in the first the layers that need no
+/// light.
+void trace_camera(const Frame& frame,
+                  const Pass& pass,
+                  glm::ivec2 first,
+                  glm::ivec2 last,
+                  int stratum,
+                  Block& block) {
+    const int strata = frame.strata * frame.strata;
     std::vector<Layer>& layers = frame.picture.layers;
     const glm::dvec3 origin(frame.camera.world_from_camera[3]);
     const glm::dvec3 forward = -glm::normalize(glm::dvec3(frame.camera.world_from_camera[2]));
@@ -70,60 +80,104 @@ void trace_camera(
     for (int y = first.y; y < last.y; ++y)
         for (int x = first.x; x < last.x; ++x) {
             Sample sample;
-            sample.pixel =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.picture.size_px.x) +
-                static_cast<std::size_t>(x);
-            sample.key =
-                static_cast<std::uint32_t>(sample.pixel) * static_cast<std::uint32_t>(samples) +
+            sample.pixel = {x, y};
+            sample.index = index_of(frame, sample.pixel);
+            const auto key =
+                static_cast<std::uint32_t>(sample.index) * static_cast<std::uint32_t>(strata) +
                 static_cast<std::uint32_t>(stratum);
-            const glm::uvec4 random = shared::hash4({sample.key, ~0U, frame.options.seed, 0U});
+            const glm::uvec4 random = shared::hash4({key, ~0U, frame.options.seed, 0U});
             sample.direction =
                 camera_ray(frame.camera, frame.picture.size_px,
                            film_position_px({x, y}, stratum, frame.strata, random.x, random.y));
             const std::optional<Hit> hit = frame.tracer.trace(origin, sample.direction);
             if (!hit)
                 continue;
-            sample.reflectance = frame.reflectances[static_cast<std::size_t>(hit->material)];
-            add(layers[kAlbedo], sample.pixel,
-                sample.reflectance.diffuse * (1.0F / static_cast<float>(samples)));
-            if (stratum == samples / 2) {  // depths and normals have no meaningful mean
-                layers[kDepth].values[sample.pixel] =
-                    static_cast<float>(glm::dot(hit->position_world_m - origin, forward));
-                add(layers[kNormal], sample.pixel, glm::vec3(hit->shading_normal));
-            }
+            sample.brdf = &frame.brdfs[static_cast<std::size_t>(hit->material)];
+            sample.frame =
+                shared::frame_from_tangent(glm::vec3(hit->shading_normal), glm::vec3(hit->tangent));
             block.samples.push_back(sample);
             block.hits.push_back(*hit);
+            if (pass.index != 0)
+                continue;
+            add(layers[kAlbedo], sample.index,
+                sample.brdf->diffuse * (1.0F / static_cast<float>(strata)));
+            if (stratum == strata / 2) {  // depths and normals have no meaningful mean
+                layers[kDepth].values[sample.index] =
+                    static_cast<float>(glm::dot(hit->position_world_m - origin, forward));
+                add(layers[kNormal], sample.index, glm::vec3(hit->shading_normal));
+            }
         }
 }
 
+bool needs_sums(const Frame& frame) {
+    return !frame.options.sampler.has_value();
+}
+
+/// The sum where it is right, samples elsewhere. The sum for lobes has no coarser form.
+LampLight shade(const Frame& frame,
+                const ShadeQuery& query,
+                int q,
+                const Lamp& lamp,
+                std::size_t k,
+                Block& block) {
+    const bool is_glossy = shared::brdf_is_glossy(query.brdf);
+    if (needs_sums(frame) && !is_glossy)
+        return shade_diffuse(lamp, frame.tracer, query, block.sums, k, block.scratch);
+    if (needs_sums(frame) && q == 0 && resolves_lobe(lamp, query))
+        return shade_reflected(lamp, frame.tracer, query, block.scratch);
+    model::SamplerOptions sampler;
+    sampler.sampler = frame.options.sampler.value_or(model::Sampler::Systematic);
+    sampler.sequence = frame.options.sequence.value_or(model::default_sequence(sampler.sampler));
+    return shade_sampled(lamp, frame.tracer, query, sampler,
+                         needs_sums(frame) ? &block.sums : nullptr, k, block.scratch);
+}
+
 /// Adds one lamp's light to the layers, from sums that are ready.
-void shade_block(const Frame& frame, std::size_t lamp, Block& block) {
-    const int samples = frame.strata * frame.strata;
-    const float share = 1.0F / static_cast<float>(samples);
-    // Samples of one pixel share the pixel's visibility samples; 8 keep the ratio's bias small.
-    const int visibility_samples = std::max(frame.options.visibility_samples / samples,
-                                            std::min(8, frame.options.visibility_samples));
+void shade_block(
+    const Frame& frame, const Pass& pass, int stratum, std::size_t lamp, Block& block) {
+    const int strata = frame.strata * frame.strata;
+    const SampleSets sets = sets_of(frame.options, pass.samples);
+    const auto lamps = static_cast<std::uint32_t>(frame.lamps.lamps.size());
+    // Sets are numbered through passes, camera samples and lamps.
+    const std::uint32_t first_set =
+        ((pass.index * static_cast<std::uint32_t>(strata) + static_cast<std::uint32_t>(stratum)) *
+             lamps +
+         static_cast<std::uint32_t>(lamp)) *
+        static_cast<std::uint32_t>(kMostSets);
+    const float share = pass.weight / static_cast<float>(strata);
     std::vector<Layer>& layers = frame.picture.layers;
     for (std::size_t k = 0; k < block.samples.size(); ++k) {
         const Sample& sample = block.samples[k];
-        const ShadeQuery query{block.hits[k],      -sample.direction,
-                               sample.reflectance, {sample.key, static_cast<std::uint32_t>(lamp)},
-                               frame.options.seed, visibility_samples};
-        const LampLight light =
-            shade(frame.lamps.lamps[lamp], frame.tracer, query, block.sums, k, block.scratch);
-        add(layers[kRadiance], sample.pixel, light.radiance * share);
-        add(layers[kIrradiance], sample.pixel, light.irradiance * share);
-        add(layers[kFirstLamp + lamp], sample.pixel, light.radiance * share);
-        block.variance[k] += light.sigma_y * light.sigma_y * share * share;
+        const ShadeQuery query{block.hits[k],
+                               -sample.direction,
+                               *sample.brdf,
+                               sample.frame,
+                               sets,
+                               glm::uvec2(sample.pixel),
+                               first_set,
+                               frame.options.seed,
+                               frame.options.shift};
+        const LampLight light = shade(frame, query, pass.q, frame.lamps.lamps[lamp], k, block);
+        add(layers[kRadiance], sample.index, light.radiance * share);
+        add(layers[kIrradiance], sample.index, light.irradiance * share);
+        add(layers[kFirstLamp + lamp], sample.index, light.radiance * share);
+        layers[kSigma].values[sample.index] += light.variance_y * share * share;
+        if (frame.bias_layer)
+            layers[*frame.bias_layer].values[sample.index] +=
+                block.sums.bias_bound_rel * shared::luminance709(light.radiance) * share;
         // The same coefficients err alike in all lamps and samples that show them: added as they
         // are, an upper bound where files differ.
-        block.measured[k] += light.sigma_measured_y * share;
+        if (frame.measured_layer)
+            layers[*frame.measured_layer].values[sample.index] += light.sigma_measured_y * share;
     }
 }
 
-void render_block(
-    const Frame& frame, glm::ivec2 first, glm::ivec2 last, Block& block, TileReport& report) {
-    std::vector<Layer>& layers = frame.picture.layers;
+void render_block(const Frame& frame,
+                  const Pass& pass,
+                  glm::ivec2 first,
+                  glm::ivec2 last,
+                  Block& block,
+                  TileReport& report) {
     for (int stratum = 0; stratum < frame.strata * frame.strata; ++stratum) {
         double at_s = now_s();
         const auto spent = [&at_s](double& total_s) {
@@ -131,46 +185,65 @@ void render_block(
             at_s = now_s();
             total_s += at_s - before_s;
         };
-        trace_camera(frame, first, last, stratum, block);
+        trace_camera(frame, pass, first, last, stratum, block);
         report.camera_rays += static_cast<std::uint64_t>((last.x - first.x) * (last.y - first.y));
         spent(report.camera_s);
         if (block.hits.empty())
             continue;
-        block.variance.assign(block.samples.size(), 0.0F);
-        block.measured.assign(block.samples.size(), 0.0F);
         for (std::size_t lamp = 0; lamp < frame.lamps.lamps.size(); ++lamp) {
-            sum_light(frame.lamps.lamps[lamp], block.hits, block.sums);
-            report.multiply_adds += block.sums.multiply_adds;
-            spent(report.sums_s);
-            shade_block(frame, lamp, block);
+            if (needs_sums(frame)) {
+                sum_light(frame.lamps.lamps[lamp], pass.q, block.hits, block.sums);
+                report.multiply_adds += block.sums.multiply_adds;
+                spent(report.sums_s);
+            }
+            shade_block(frame, pass, stratum, lamp, block);
             spent(report.visibility_s);
-        }
-        const std::size_t measured_layer = kFirstLamp + frame.lamps.lamps.size();
-        for (std::size_t k = 0; k < block.samples.size(); ++k) {
-            layers[kSigma].values[block.samples[k].pixel] += block.variance[k];
-            if (measured_layer < layers.size())
-                layers[measured_layer].values[block.samples[k].pixel] += block.measured[k];
         }
     }
 }
 
 }  // namespace
 
-void render_tile(const Frame& frame, glm::ivec2 first, TileReport& report) {
+SampleSets sets_of(const RenderOptions& options, int samples) {
+    // Camera samples of one pixel share its samples; 8 each keep the ratio's bias small.
+    const int each =
+        std::max(samples / options.samples_per_pixel, std::min(samples, kFewestSamples));
+    return make_sets(each, options.samples_per_pixel);
+}
+
+void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileReport& report) {
     const glm::ivec2 last = glm::min(first + kTilePx, frame.picture.size_px);
     Block block;
     for (int y = first.y; y < last.y; y += kBlockPx)
         for (int x = first.x; x < last.x; x += kBlockPx)
-            render_block(frame, {x, y}, glm::min(glm::ivec2(x, y) + kBlockPx, last), block, report);
+            render_block(frame, pass, {x, y}, glm::min(glm::ivec2(x, y) + kBlockPx, last), block,
+                         report);
     report.shadow_rays += block.scratch.shadow_rays;
+}
 
-    // Variances have been summed; the layer holds their roots.
-    for (int y = first.y; y < last.y; ++y)
-        for (int x = first.x; x < last.x; ++x) {
-            float& sigma = frame.picture.layers[kSigma]
-                               .values[static_cast<std::size_t>(y * frame.picture.size_px.x + x)];
-            sigma = std::sqrt(sigma);
-        }
+float root_of_variance(const RenderOptions& options, const TileWeight& weight) {
+    const SampleSets sets = sets_of(options, kMostSets * options.samples_per_pixel);
+    // Passes of unequal weight count as so many of equal ones.
+    const float passes = weight.sum * weight.sum / weight.squares;
+    return static_cast<float>(
+        unbiased_root((sets.sets - 1) * options.samples_per_pixel * static_cast<double>(passes)));
+}
+
+void finish_tile(const Frame& frame, glm::ivec2 first, const TileWeight& weight) {
+    const glm::ivec2 last = glm::min(first + kTilePx, frame.picture.size_px);
+    const float root = root_of_variance(frame.options, weight);
+    for (std::size_t l = 0; l < frame.picture.layers.size(); ++l) {
+        if (l == kAlbedo || l == kDepth || l == kNormal)
+            continue;
+        Layer& layer = frame.picture.layers[l];
+        const std::size_t channels = layer.channels.size();
+        for (int y = first.y; y < last.y; ++y)
+            for (std::size_t i = index_of(frame, {first.x, y}) * channels;
+                 i < index_of(frame, {last.x, y}) * channels; ++i)
+                layer.values[i] =
+                    (l == kSigma ? root * std::sqrt(layer.values[i]) : layer.values[i]) /
+                    weight.sum;
+    }
 }
 
 }  // namespace nearfield::render

@@ -4,35 +4,28 @@
 
 #include "render/cpu/lamps.h"
 #include "render/cpu/render.h"
+#include "render/cpu/shade.h"
 #include "render/cpu/tracer.h"
 
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace nearfield::render {
 
 constexpr int kTilePx = 16;  // 256 pixels: enough work a task, few enough idle cores at the end
 
-/// What all tiles share.
-struct Frame {
-    const Scene& scene;
-    const RenderOptions& options;
-    const Camera& camera;
-    const Lamps& lamps;
-    const Tracer& tracer;
-    Picture& picture;
-    std::vector<Reflectance> reflectances;
-    int strata = 1;  // a pixel's side
+/// Samples that all of a pixel's strata draw of a lamp in one pass over the frame.
+struct Pass {
+    std::uint32_t index = 0;  // its random numbers are its own
+    int samples = 64;
+    int q = 0;            // of the windowed sum; 0: exact
+    float weight = 1.0F;  // among passes
 };
 
-struct TileReport {
-    double camera_s = 0, sums_s = 0, visibility_s = 0;
-    std::uint64_t camera_rays = 0, shadow_rays = 0, multiply_adds = 0;
-};
-
-/// Layers in their order; behind the lamps' layers sigma_measured, where there is one.
+/// Layers in their order; behind the lamps' layers those that not every picture has.
 enum LayerIndex : std::size_t {
     kRadiance,
     kIrradiance,
@@ -43,7 +36,48 @@ enum LayerIndex : std::size_t {
     kFirstLamp
 };
 
-/// Renders the pixels from `first` to `first + kTilePx` into the frame's picture.
-void render_tile(const Frame& frame, glm::ivec2 first, TileReport& report);
+/// What all tiles share. Between passes the picture holds sums: radiance and what is linear in it
+/// times the passes' weights, sigma's layer variances times their squares.
+struct Frame {
+    const Scene& scene;
+    const RenderOptions& options;
+    const Camera& camera;
+    const Lamps& lamps;
+    const Tracer& tracer;
+    Picture& picture;
+    std::vector<shared::Brdf> brdfs;  // [material]
+    int strata = 1;                   // a pixel's side
+    std::optional<std::size_t> bias_layer, measured_layer;
+
+    glm::ivec2 tiles() const { return (picture.size_px + kTilePx - 1) / kTilePx; }
+};
+
+struct TileReport {
+    double camera_s = 0, sums_s = 0, visibility_s = 0;
+    std::uint64_t camera_rays = 0, shadow_rays = 0, multiply_adds = 0;
+};
+
+/// Adds one pass of the pixels from `first` to `first + kTilePx`; a first pass (index 0) also
+/// writes what needs no light.
+void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileReport& report);
+
+/// What a tile's sums hold: the passes' weights, and their squares.
+struct TileWeight {
+    float sum = 0.0F, squares = 0.0F;
+
+    void add(const Pass& pass) {
+        sum += pass.weight;
+        squares += pass.weight * pass.weight;
+    }
+};
+
+/// Turns the tile's sums into means, and variances into sigma.
+void finish_tile(const Frame& frame, glm::ivec2 first, const TileWeight& weight);
+
+/// What multiplies the root of a pixel's variance, which few sets tell: unbiased_root.
+float root_of_variance(const RenderOptions& options, const TileWeight& weight);
+
+/// The pass' sets of samples of one camera sample and lamp.
+SampleSets sets_of(const RenderOptions& options, int samples);
 
 }  // namespace nearfield::render

@@ -172,6 +172,12 @@ std::optional<Hit> Tracer::trace(glm::dvec3 origin_world_m, glm::dvec3 direction
             hit.shading_normal = -hit.shading_normal;
     }
 
+    if (!mesh.tangents.empty())
+        hit.tangent = glm::dmat3(instance.world_from_mesh) *
+                      glm::dvec3(mesh.tangents[triangle.x] * (1.0F - query.hit.u - query.hit.v) +
+                                 mesh.tangents[triangle.y] * query.hit.u +
+                                 mesh.tangents[triangle.z] * query.hit.v);
+
     // Embree subtracts corners from origins in float: its error is a few units in the last place of
     // the larger.
     constexpr double kUnits = 16.0 / 8388608.0;

@@ -17,6 +17,7 @@ struct Hit {
     glm::dvec3 position_world_m{0.0};
     glm::dvec3 geometric_normal{0.0};  // unit, of the triangle, towards the ray's origin
     glm::dvec3 shading_normal{0.0};    // unit, interpolated, on the geometric normal's side
+    glm::dvec3 tangent{0.0};           // interpolated, of any length; 0: the mesh has none
     double offset_m = 0;  // how far rays that leave must start above the surface to miss it
     int material = 0;
 };

@@ -98,9 +98,29 @@ class Pipeline(ProgramTest):
             self.assertGreater(sigma, 0.0)
             self.assertLess(abs(estimate["e_y_lx"] - truth["e_y_lx"]), MOST_SIGMA * sigma)
 
+    def test_probe_by_every_sampler_agrees_with_the_sum_or_is_known_to_be_biased(self):
+        exact = rows_of(self.probe())
+        for sampler in ("systematic", "cells", "uniform"):
+            rows = rows_of(self.probe("--sampler", sampler))
+            for estimate, truth in zip(rows[:3], exact[:3]):
+                sigma = estimate["sigma_sampling_y_lx"]
+                self.assertGreater(sigma, 0.0)
+                self.assertLess(abs(estimate["e_y_lx"] - truth["e_y_lx"]), MOST_SIGMA * sigma, sampler)
+            self.assertEqual(rows[3]["e_y_lx"], 0.0)
+        for sampler in ("pdis", "precomputed"):
+            self.assertEqual(self.probe("--sampler", sampler), self.probe("--sampler", sampler))
+
+    def test_probe_of_a_coarser_sum_states_a_bound_of_its_bias(self):
+        text = self.probe("--q", "1")
+        self.assertEqual(text.splitlines()[0].split(",")[-1], "bias_bound_y_lx")
+        rows, exact = rows_of(text), rows_of(self.probe())
+        self.assertGreater(rows[0]["bias_bound_y_lx"], 0.0)
+        self.assertNotEqual(rows[0]["e_y_lx"], exact[0]["e_y_lx"])
+        self.assertEqual(rows[0]["sigma_sampling_y_lx"], 0.0)
+
     def test_render_writes_a_picture_with_layers_and_a_png(self):
         write_scene("scene.gltf", "lamp.luminaire.exr")
-        self.done("render", "scene.gltf", "-o", "picture.exr", "--width", "48", "--visibility-samples", "8")
+        self.done("render", "scene.gltf", "-o", "picture.exr", "--width", "48", "--samples", "8")
         info = json.loads(self.done("info", "picture.exr", "--json").stdout)
         self.assertEqual((info["kind"], info["size_px"]), ("picture", [48, 32]))
         layers = {layer["name"] for layer in info["layers"]}
@@ -111,10 +131,30 @@ class Pipeline(ProgramTest):
         self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
         self.assertGreater(len(set(png)), 50)  # not one color
 
+    def test_render_says_whether_an_error_was_reached_and_what_a_time_bought(self):
+        write_scene("scene.gltf", "lamp.luminaire.exr")
+        render = ["render", "scene.gltf", "-o", "picture.exr", "--width", "48"]
+        self.assertIn("of the wanted 20 %, reached", self.done(*render, "--error", "0.2").stderr)
+        result = run(*render, "--error", "0.0001", "--samples", "32")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("not reached", result.stderr)
+        self.assertIn("bought an error of", self.done(*render, "--time-ms", "300").stderr)
+        options = json.loads(self.done("info", "picture.exr", "--json").stdout)["provenance"]["options"]
+        self.assertIn("depend on the clock", str(options))
+
+    def test_render_by_every_sampler(self):
+        write_scene("scene.gltf", "lamp.luminaire.exr")
+        for sampler in ("sum", "systematic", "cells", "pdis", "precomputed", "uniform"):
+            text = self.done("render", "scene.gltf", "-o", "picture.exr", "--width", "24", "--sampler", sampler).stderr
+            self.assertIn(f"{sampler} sampler, 1 pass of 64 samples", text)
+        self.done("render", "scene.gltf", "-o", "picture.exr", "--width", "24", "--q", "4")
+        layers = json.loads(self.done("info", "picture.exr", "--json").stdout)["layers"]
+        self.assertIn("bias_bound", {layer["name"] for layer in layers})
+
     def test_reproducible_files_do_not_depend_on_the_run_or_the_number_of_threads(self):
         write_scene("scene.gltf", "lamp.luminaire.exr")
         write_rays("disk.tm25ray", disk_rays(5000), luminous_flux_lm=100.0)
-        render = ["render", "scene.gltf", "--width", "48", "--visibility-samples", "8"]
+        render = ["render", "scene.gltf", "--width", "48", "--samples", "8"]
         commands = [["simulate", "headlight", *SMALL_LAMP], ["pack", "lamp.lightfield.exr"],
                     ["convert", "disk.tm25ray"], render]
         for command in commands:

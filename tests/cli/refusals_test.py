@@ -2,6 +2,7 @@
 """Proves that what is wrong is refused in one line that says what was expected and got: exit code 2 for the
 command line, 1 for the world, 3 for a result that is not good enough; and that nothing is written then."""
 import pathlib
+import resource
 import struct
 import subprocess
 
@@ -27,11 +28,19 @@ USAGE = [
     ([*RENDER, "--seed", "abc"], ["--seed", "'abc'"]),
     ([*RENDER, "--exposure-ev", "nan"], ["--exposure-ev", "-100 ... 100", "'nan'"]),
     ([*RENDER, "--samples-per-pixel", "3"], ["samples per pixel", "square", "3"]),
-    ([*RENDER, "--visibility-samples", "1"], ["--visibility-samples", "'1'"]),
+    ([*RENDER, "--samples", "1"], ["samples", "2 or more", "1"]),
+    ([*RENDER, "--samples", "-1"], ["--samples", "'-1'"]),
+    ([*RENDER, "--sampler", "both"], ["--sampler", "sum, systematic", "'both'"]),
+    ([*RENDER, "--sampler", "cells", "--q", "8"], ["q", "but sum", "8"]),
+    ([*RENDER, "--shift", "x"], ["--shift", "blue-noise", "'x'"]),
+    ([*RENDER, "--sequence", "x"], ["--sequence", "halton", "'x'"]),
+    ([*RENDER, "--error", "1"], ["--error", "'1'"]),
+    ([*RENDER, "--time-ms", "-1"], ["--time-ms", "'-1'"]),
     ([*RENDER, "--tonemap", "0"], ["--tonemap", "filmic, papers", "'0'"]),
     ([*RENDER, "--device", "gpu"], ["--device", "cpu", "'gpu'"]),
     (["render", "scene.gltf", "-o", "picture.png"], ["NAME.exr", "'picture.png'"]),
-    ([*PROBE, "--sampler", "both"], ["--sampler", "sum, aperture", "'both'"]),
+    ([*PROBE, "--sampler", "both"], ["--sampler", "aperture", "'both'"]),
+    ([*PROBE, "--sampler", "cells", "--q", "8"], ["--q", "but sum", "8"]),
     ([*PROBE, "--samples", "0"], ["--samples", "2 ... 1073741824", "'0'"]),
     ([*PROBE, "--seed", "99999999999"], ["--seed", "0 ... 4294967295", "'99999999999'"]),
     ([*SIMULATE, "--grid", "3"], ["--grid", "13x11", "'3'"]),
@@ -45,6 +54,9 @@ USAGE = [
     (["simulate", "moon", "-o", "x.exr"], ["headlight, reference", "'moon'"]),
     ([*CONVERT, "--slabs", "2"], ["--slabs", "1, 5, 6", "'2'"]),
     ([*CONVERT, "--grid", "1x1"], ["--grid", "3x3", "1x1"]),
+    ([*CONVERT, "--grid", "4x4", "--texels", "9999x9999"],
+     ["--grid, --texels", "268 million", "1600 million", "11.9 GiB"]),
+    ([*CONVERT, "--texels", "9999x9999"], ["--grid, --texels", "268 million", "3x3 images"]),
     ([*CONVERT, "--flux-lm", "0"], ["--flux-lm", "'0'"]),
     ([*CONVERT, "--u-plane-mm", "inf"], ["--u-plane-mm", "'inf'"]),
     ([*CONVERT, "--seed", "-1"], ["--seed", "'-1'"]),
@@ -99,6 +111,18 @@ class World(ProgramTest):
         self.make_lamp("absent")
         self.assertIn("'nobody'", self.refused(1, *RENDER, "--camera", "nobody"))
 
+    def test_a_picture_larger_than_memory(self):
+        self.make_lamp()
+        write_scene("scene.gltf", "lamp.luminaire.exr")
+
+        def with_4_gib():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 32, 1 << 32))
+
+        line = self.refused(1, *RENDER, "--width", "16384", "--height", "16384", preexec_fn=with_4_gib)
+        self.assertIn("larger than the memory", line)
+        self.assertIn("GiB", line)
+        self.assertNotIn("picture.exr", self.files())
+
     def test_outputs_are_refused_before_the_work(self):
         self.make_lamp()
         before = self.files()
@@ -122,6 +146,20 @@ class World(ProgramTest):
             self.assertIn("would replace an input", self.refused(1, *command))
         self.assertIn("two outputs", self.refused(1, *RENDER, "--png", "./picture.exr"))
         self.assertEqual(before, {name: pathlib.Path(name).read_bytes() for name in self.files()})
+
+    def test_values_that_are_no_light_are_refused_unless_repaired(self):
+        self.make_lamp()
+        lamp = bytearray(pathlib.Path("lamp.luminaire.exr").read_bytes())
+        # The first image of slab0.coeffs, uncompressed: 32 x 24 texels of 3 channels.
+        first = lamp.index(struct.pack("<6i", 0, 0, 0, 0, 0, 32 * 24 * 3 * 4)) + 24
+        struct.pack_into("<4f", lamp, first, float("nan"), -1.0, float("inf"), -0.5)
+        pathlib.Path("broken.luminaire.exr").write_bytes(lamp)
+        line = self.refused(1, "pack", "broken.luminaire.exr", "-o", "x.luminaire.exr")
+        for text in ("broken.luminaire.exr", "image", "texel (0, 23)", "finite and >= 0", "nan"):
+            self.assertIn(text, line)
+        said = self.done("pack", "broken.luminaire.exr", "-o", "x.luminaire.exr", "--repair").stderr
+        self.assertIn("4 values repaired: 2 negative and 1 NaN now 0, 1 infinite", said)
+        self.done("info", "x.luminaire.exr", "--verify")
 
     def test_a_result_that_cannot_be_printed_is_an_error(self):
         self.make_lamp()

@@ -19,6 +19,14 @@ Scene small_scene() {
     Scene scene = test::floor_scene();
     scene.meshes[0].normals.assign(4, {0, 0, 1});
     test::add_blocker(scene, "plate", {0, 0, 1}, {1, 1});
+    scene.meshes[1].normals.assign(4, {0, 0, 1});
+    scene.meshes[1].tangents.assign(4, {1, 0, 0});
+    for (shared::uint kind = shared::kBrdfPhong; kind <= shared::kBrdfHalfwayDisk; ++kind) {
+        Material material{"m", glm::vec3(0.5F), 0.0F, 0.5F};
+        material.given_brdf = brdf(material);
+        material.given_brdf->kind = kind;
+        scene.materials.push_back(material);
+    }
     LuminaireInstance lamp;
     lamp.name = lamp.uri = "lamp";
     lamp.excludes = {"plate"};
@@ -31,6 +39,15 @@ std::string read_bytes(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Whether light that a material reflects is a number, as renderers rely on.
+bool is_sound(const Material& material) {
+    const glm::vec3 to_viewer(0.6F, 0.0F, 0.8F);
+    const glm::vec3 value = shared::brdf_eval(brdf(material), {-0.6F, 0.0F, 0.8F}, to_viewer);
+    const float width_rad = shared::brdf_lobe_width_rad(brdf(material), to_viewer);
+    return glm::all(glm::greaterThanEqual(value, glm::vec3(0.0F))) &&
+           glm::all(glm::lessThan(value, glm::vec3(1e30F))) && width_rad > 0.0F;
+}
+
 /// Reads fuzz_count() files made by damage(seed).
 template <typename Damage>
 void fuzz(const std::string& path, std::size_t good_size, const Damage& damage) {
@@ -41,6 +58,8 @@ void fuzz(const std::string& path, std::size_t good_size, const Damage& damage) 
             const Scene scene = read_scene(path);
             for (const Mesh& mesh : scene.meshes)
                 ASSERT_LE(mesh.positions_m.size() * sizeof(glm::vec3), 16 * good_size) << seed;
+            for (const Material& material : scene.materials)
+                ASSERT_TRUE(is_sound(material)) << seed;
             ++read;
         } catch (const Error& error) {
             ASSERT_NE(std::string(error.what()).find(path), std::string::npos)
@@ -56,7 +75,7 @@ std::string damage_values(const nlohmann::json& good, std::uint64_t seed) {
     static const nlohmann::json values = nlohmann::json::parse(
         R"([-1, 0, 1, 2, 3, 7, 252, 65535, 2147483647, 2147483648, 4294967296, 18446744073709551615, -2147483649, 0.5,
             1e-300, 1e300, true, null, "", "x", [], {}, [0], [-1], [[1]], {"index": 0}, 5120, 5121, 5125, 5126, "VEC3",
-            "SCALAR", "data:application/octet-stream;base64,AAAA", "mutated.gltf"])");
+            "SCALAR", "VEC4", "ggx", "ward", "lafortune", [0.1, 0.2], [-1, -1, 1], "data:application/octet-stream;base64,AAAA", "mutated.gltf"])");
     std::mt19937_64 random(seed);
     nlohmann::json damaged = good;
     for (std::uint64_t changes = 1 + random() % 3; changes > 0; --changes) {

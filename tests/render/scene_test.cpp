@@ -15,12 +15,28 @@ namespace {
 
 using nlohmann::json;
 
+/// A BRDF of numbers that floats in decimal notation may spoil.
+shared::Brdf given_brdf(shared::uint kind) {
+    shared::Brdf brdf{};
+    brdf.kind = kind;
+    brdf.diffuse = {0.1F, 1.0F / 3.0F, 0.0F};
+    brdf.specular = {0.7F, 0.04F, 1.0F};
+    brdf.exponent = 12.3F;
+    brdf.alpha = {0.05F, 0.3F};
+    brdf.cosines = {-0.9F, -1.0F, 0.98F};
+    return brdf;
+}
+
 Scene sample_scene() {
     Scene scene = test::floor_scene();
     scene.meshes[0].normals.assign(4, {0, 0, 1});
     scene.materials.push_back({"brass", {0.9F, 0.7F, 0.3F}, 1.0F, 0.25F});
     test::add_blocker(scene, "plate", {0.5, 0.25, 1}, {1, 2});
     scene.meshes[1].material = 1;
+    scene.meshes[1].normals.assign(4, {0, 0, 1});
+    scene.meshes[1].tangents.assign(4, {0, 1, 0});
+    for (shared::uint kind = shared::kBrdfPhong; kind <= shared::kBrdfHalfwayDisk; ++kind)
+        scene.materials.push_back({"given", {0.1F, 0.2F, 0.3F}, 0.5F, 0.5F, given_brdf(kind)});
     scene.cameras[0].aspect = 1.5;
     LuminaireInstance lamp;
     lamp.name = "left";
@@ -35,12 +51,28 @@ Scene sample_scene() {
     return scene;
 }
 
+/// What a kind has no use for need not survive.
+void expect_equal(const shared::Brdf& a, const shared::Brdf& b) {
+    EXPECT_EQ(a.kind, b.kind);
+    EXPECT_EQ(a.diffuse, b.diffuse);
+    EXPECT_EQ(a.specular, b.specular);
+    if (a.kind == shared::kBrdfGgx || a.kind == shared::kBrdfWard) {
+        EXPECT_EQ(a.alpha, b.alpha);
+    } else {
+        EXPECT_EQ(a.exponent, b.exponent);
+    }
+    if (a.kind == shared::kBrdfLafortune) {
+        EXPECT_EQ(a.cosines, b.cosines);
+    }
+}
+
 void expect_equal(const Scene& a, const Scene& b) {
     ASSERT_EQ(a.meshes.size(), b.meshes.size());
     for (std::size_t i = 0; i < a.meshes.size(); ++i) {
         EXPECT_EQ(a.meshes[i].name, b.meshes[i].name);
         EXPECT_EQ(a.meshes[i].positions_m, b.meshes[i].positions_m);
         EXPECT_EQ(a.meshes[i].normals, b.meshes[i].normals);
+        EXPECT_EQ(a.meshes[i].tangents, b.meshes[i].tangents);
         EXPECT_EQ(a.meshes[i].triangles, b.meshes[i].triangles);
         EXPECT_EQ(a.meshes[i].material, b.meshes[i].material);
     }
@@ -50,6 +82,9 @@ void expect_equal(const Scene& a, const Scene& b) {
         EXPECT_EQ(a.materials[i].base_color, b.materials[i].base_color);
         EXPECT_EQ(a.materials[i].metallic, b.materials[i].metallic);
         EXPECT_EQ(a.materials[i].roughness, b.materials[i].roughness);
+        ASSERT_EQ(a.materials[i].given_brdf.has_value(), b.materials[i].given_brdf.has_value());
+        if (a.materials[i].given_brdf)
+            expect_equal(*a.materials[i].given_brdf, *b.materials[i].given_brdf);
     }
     ASSERT_EQ(a.instances.size(), b.instances.size());
     for (std::size_t i = 0; i < a.instances.size(); ++i)
@@ -132,13 +167,17 @@ TEST(Scene, ErrorsNameFileAndPlace) {
         {"/nodes/0/children", "[1]", "nodes[1] a second time"},
         {"/nodes/0/children", "[0]", "nodes[0] a second time"},
         {"/nodes/0/children", "[99]", "nodes[0].children"},
+        {"/scenes/0/nodes", "[0, 1, 1]", "nodes[1] a second time"},
         {"/scene", "4", "scene"},
         {"/extensionsUsed", "[]", "extensionsUsed"},
         {"/extensionsRequired", "[\"KHR_draco_mesh_compression\"]", "extensionsRequired"},
         {"/cameras/0/perspective/yfov", "4", "cameras[0].perspective.yfov"},
         {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[2,0,0,1]", "materials[0]"},
         {"/materials/1/pbrMetallicRoughness/roughnessFactor", "-0.5", "roughnessFactor"},
-        {"/meshes/0/primitives/0/material", "5", "meshes[0].primitives[0].material"},
+        {"/meshes/1/primitives/0/attributes/TANGENT", "0",
+         "meshes[1].primitives[0].attributes.TANGENT"},
+        {"/meshes/1/primitives/0/attributes/TANGENT", "-1", "TANGENT"},
+        {"/meshes/0/primitives/0/material", "99", "meshes[0].primitives[0].material"},
         {"/meshes/0/primitives/0/mode", "5", "meshes[0].primitives[0].mode"},
         {"/meshes/0/primitives/0/attributes/POSITION", "50",
          "meshes[0].primitives[0].attributes.POSITION"},
@@ -162,6 +201,110 @@ TEST(Scene, ErrorsNameFileAndPlace) {
             << bad.pointer << ": " << message;
         EXPECT_NE(message.find(bad.place), std::string::npos) << bad.pointer << ": " << message;
     }
+}
+
+/// The same for materials[2 ... 6]: Phong, GGX, Ward, Lafortune, halfway disk.
+const std::vector<BadCase> kBadBrdfs = {
+    {"2/model", "\"phung\"", "expected phong, ggx, ward, lafortune, halfway_disk, got 'phung'"},
+    {"2/model", "3", "model"},
+    {"2/alpha", "0.1", "'alpha'"},
+    {"2/exponent", "-1", "NEARFIELD_brdf.exponent"},
+    {"2/exponent", "1e7", "NEARFIELD_brdf.exponent"},
+    {"2/exponent", "[2]", "NEARFIELD_brdf.exponent"},
+    {"2/specular", "[0.9, 0.9, 0.9]", "diffuse + specular of at most 1"},
+    {"2/specular", "[0.1, 0.1]", "NEARFIELD_brdf.specular"},
+    {"2/diffuse", "[0.1, -0.1, 0]", "NEARFIELD_brdf.diffuse[1]"},
+    {"2/diffuse", "0.1", "NEARFIELD_brdf.diffuse"},
+    {"3/alpha", "0", "NEARFIELD_brdf.alpha"},
+    {"3/alpha", "[0.1, 1.5]", "NEARFIELD_brdf.alpha[1]"},
+    {"3/alpha", "[0.1, 0.1, 0.1]", "NEARFIELD_brdf.alpha"},
+    {"3/exponent", "7", "'exponent'"},
+    {"3/specular", "[1.1, 0, 0]", "NEARFIELD_brdf.specular[0]"},
+    {"4/cosines", "[-1, -1, 1]", "'cosines'"},
+    {"5/cosines", "[-1, -1, 1.5]", "NEARFIELD_brdf.cosines[2]"},
+    {"5/model", "\"phong\"", "'cosines'"},
+    {"6/colour", "1", "'colour'"},
+};
+
+// Proves that every rule of NEARFIELD_brdf is checked, and names the material and the member.
+TEST(Scene, BrdfErrorsNameFileAndPlace) {
+    const json good = document();
+    for (const BadCase& bad : kBadBrdfs) {
+        json changed = good;
+        const std::string index(1, bad.pointer[0]);
+        const std::string member(bad.pointer + 1);
+        changed[json::json_pointer("/materials/" + index + "/extensions/NEARFIELD_brdf" + member)] =
+            json::parse(bad.value);
+        const std::string message = error_of(changed);
+        EXPECT_NE(message.find("materials[" + index + "].extensions.NEARFIELD_brdf"),
+                  std::string::npos)
+            << bad.pointer << ": " << message;
+        EXPECT_NE(message.find(bad.place), std::string::npos) << bad.pointer << ": " << message;
+    }
+    for (const auto& [index, member] : std::vector<std::pair<int, std::string>>{
+             {2, "exponent"}, {5, "exponent"}, {5, "cosines"}, {6, "exponent"}, {3, "model"}}) {
+        json changed = good;
+        changed["materials"][static_cast<std::size_t>(index)]["extensions"]["NEARFIELD_brdf"].erase(
+            member);
+        EXPECT_NE(error_of(changed).find("NEARFIELD_brdf." + member), std::string::npos)
+            << error_of(changed);
+    }
+    json changed = good;
+    changed["extensionsUsed"] = {"NEARFIELD_luminaire"};
+    EXPECT_NE(error_of(changed).find("NEARFIELD_brdf"), std::string::npos);
+    changed = good;
+    changed["extensionsRequired"] = {"NEARFIELD_brdf", "NEARFIELD_luminaire"};
+    EXPECT_EQ(error_of(changed), "no error");
+}
+
+// Proves what a model means that names nothing but itself: glTF's own factors with that lobe.
+TEST(Scene, BrdfDefaultsComeFromTheCoreMaterial) {
+    json changed = document();
+    json& material = changed["materials"][0];
+    material["pbrMetallicRoughness"] = {{"baseColorFactor", {0.5, 0.25, 1.0, 1.0}},
+                                        {"metallicFactor", 0.5},
+                                        {"roughnessFactor", 0.5}};
+    material["extensions"]["NEARFIELD_brdf"] = {{"model", "ggx"}};
+    EXPECT_EQ(error_of(changed), "no error");
+    const shared::Brdf ggx = brdf(read_scene("changed.gltf").materials[0]);
+    EXPECT_EQ(ggx.kind, shared::kBrdfGgx);
+    EXPECT_EQ(ggx.diffuse, glm::vec3(0.25F, 0.125F, 0.5F));
+    EXPECT_NEAR(ggx.specular.x, 0.27, 1e-6);  // half of 0.04, half of the base color
+    EXPECT_EQ(ggx.alpha, glm::vec2(0.25F));
+    material.erase("extensions");
+    EXPECT_EQ(error_of(changed), "no error");
+    const shared::Brdf phong = brdf(read_scene("changed.gltf").materials[0]);
+    EXPECT_EQ(phong.kind, shared::kBrdfPhong);
+    EXPECT_NEAR(phong.specular.x, 0.5 * 0.04 * 0.75 + 0.25, 1e-6);
+    EXPECT_NEAR(phong.exponent, (2.0 / 0.0625 - 2.0) / 4.0, 1e-5);
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.0;
+    material["extensions"]["NEARFIELD_brdf"] = {{"model", "ward"}};
+    EXPECT_EQ(error_of(changed), "no error");
+    EXPECT_EQ(brdf(read_scene("changed.gltf").materials[0]).alpha, glm::vec2(1e-3F));
+}
+
+// Proves that tangents are read where there are normals, as glTF says, and must be one a vertex.
+TEST(Scene, TangentsNeedNormals) {
+    json changed = document();
+    changed["meshes"][1]["primitives"][0]["attributes"].erase("NORMAL");
+    EXPECT_EQ(error_of(changed), "no error");
+    EXPECT_TRUE(read_scene("changed.gltf").meshes[1].tangents.empty());
+    Scene scene = sample_scene();
+    scene.meshes[1].tangents.pop_back();
+    write_scene(scene, "tangents.gltf");
+    EXPECT_NE(read_error("tangents.gltf").find("meshes[1].primitives[0].attributes.TANGENT"),
+              std::string::npos);
+    scene.meshes[1].tangents.assign(4, {0, 0, 2});
+    write_scene(scene, "tangents.gltf");
+    EXPECT_NE(read_error("tangents.gltf").find("TANGENT, element 0"), std::string::npos);
+}
+
+// Proves that a list of nodes that names one over and over is refused before it costs memory.
+TEST(Scene, RepeatedNodesAreRefused) {
+    json changed = document();
+    changed["nodes"][0]["children"] = json(std::vector<int>(100000, 4));
+    changed["scenes"][0]["nodes"] = {0};
+    EXPECT_NE(error_of(changed).find("nodes[4] a second time"), std::string::npos);
 }
 
 // Proves that numbers inside buffers are checked: an index beyond the vertices, a position that is

@@ -98,4 +98,41 @@ glm::dvec2 floor_position(glm::ivec2 pixel, glm::ivec2 size_px) {
            (kFloorM / size_px.y);
 }
 
+Scene half_covered() {
+    Scene scene = floor_scene();
+    scene.luminaires = {write_lamp(one_window_lamp(0.2, 1.0F), "lamp", pose({0, 0, 2}, kDown))};
+    add_blocker(scene, "sheet", {1, 0, 2.0999}, {2, 4});  // covers x > 0; U is at z = 2.1
+    scene.cameras = {
+        camera_at({0, -3, 1}, {0, 3, -1}, {0, 0, 1}, 0.5)};  // looks at the middle from below
+    return scene;
+}
+
+Scene uneven_scene() {
+    LightField lamp = one_window_lamp(0.02, 1.0F);
+    Slab& slab = lamp.slabs[0];
+    slab.grid = {3, 2};
+    slab.texels = {5, 4};
+    slab.channels = 3;
+    slab.profile = model::make_profile("bspline");
+    slab.coeffs.resize(3 * 6 * 20);
+    for (std::size_t i = 0; i < slab.coeffs.size(); ++i)
+        slab.coeffs[i] = static_cast<float>((i * 7919) % 101);
+    Scene scene = floor_scene();
+    scene.luminaires = {write_lamp(lamp, "uneven", pose({-0.8, 0.5, 0.6}, {0.9, -0.3, -0.6}))};
+    scene.luminaires[0].excludes = {"cover"};
+    add_blocker(scene, "post", {0.3, 0.1, 0.25}, {0.2, 0.4});
+    add_blocker(scene, "cover", {-0.8, 0.5, 0.5}, {0.1, 0.1});
+    return scene;
+}
+
+Scene transformed(Scene scene, const glm::dmat4& matrix) {
+    for (Instance& instance : scene.instances)
+        instance.world_from_mesh = matrix * instance.world_from_mesh;
+    for (LuminaireInstance& lamp : scene.luminaires)
+        lamp.world_from_luminaire = matrix * lamp.world_from_luminaire;
+    for (Camera& camera : scene.cameras)
+        camera.world_from_camera = matrix * camera.world_from_camera;
+    return scene;
+}
+
 }  // namespace nearfield::test

@@ -12,6 +12,9 @@
 
 namespace nearfield::test {
 
+const glm::dvec3 kDown(0, 0, -1);
+constexpr double kWindowDelta = 0.1;  // of one_window_lamp
+
 /// One square basis function of side `aperture_m` on U, one texel of `coefficient` on a wide S (0.6
 /// m, 0.1 m before U). Irradiance weighting: E on any plane z = Delta is delta^2 coefficient
 /// aperture^2 / (delta + Delta)^2.
@@ -43,5 +46,16 @@ const Layer& layer(const Picture& picture, const std::string& name);
 
 /// Floor position (x, y) under the center of a pixel of floor_scene()'s camera.
 glm::dvec2 floor_position(glm::ivec2 pixel, glm::ivec2 size_px);
+
+/// A lamp with a square aperture of 0.2 m, half of it hidden from the floor's middle by a sheet
+/// just below U's plane.
+Scene half_covered();
+
+/// An uneven lamp of 3 x 2 images in color, low over the floor and tilted, with a post in its
+/// light.
+Scene uneven_scene();
+
+/// The scene moved, lamps and cameras included.
+Scene transformed(Scene scene, const glm::dmat4& matrix);
 
 }  // namespace nearfield::test

@@ -3,7 +3,6 @@
 #include "formats/shared/brdf.glsl.h"
 #include "formats/shared/rng.glsl.h"
 
-#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,54 +11,22 @@
 namespace nearfield {
 namespace {
 
-/// Integral of the lobe times the cosine over the hemisphere, midpoint rule in double.
-double phong_albedo(double view_angle_rad,
-                    float exponent,
-                    int cosines = 1000,
-                    int azimuths = 1000) {
-    const glm::vec3 to_viewer(std::sin(view_angle_rad), 0, std::cos(view_angle_rad));
-    double sum = 0.0;
-    for (int i = 0; i < cosines; ++i)
-        for (int j = 0; j < azimuths; ++j) {
-            const double cosine = (i + 0.5) / cosines,
-                         phi = glm::two_pi<double>() * (j + 0.5) / azimuths;
-            const double sine = std::sqrt(1.0 - cosine * cosine);
-            const glm::vec3 to_light(sine * std::cos(phi), sine * std::sin(phi), cosine);
-            sum +=
-                static_cast<double>(shared::phong_lobe({0, 0, 1}, to_light, to_viewer, exponent)) *
-                cosine;
-        }
-    return sum * glm::two_pi<double>() / cosines / azimuths;
-}
-
-// Proves the lobe's normalisation: 1 at normal incidence, never more.
-TEST(Shared, PhongLobeReflectsAllAtNormalIncidenceAndNeverMore) {
-    for (const float exponent : {0.0F, 1.0F, 7.5F, 60.0F}) {
-        EXPECT_NEAR(phong_albedo(0.0, exponent), 1.0, 1e-3)
-            << exponent;  // the quadrature's own error
-        for (const double angle : {0.5, 1.0, 1.4, 1.57})
-            EXPECT_LT(phong_albedo(angle, exponent), 1.001) << exponent << " at " << angle;
-    }
-    EXPECT_NEAR(phong_albedo(0.0, 1e4F, 1000000, 1), 1.0,
-                1e-2);  // float cosines near 1, to the power of 1e4
-}
-
 // Proves the mapping's promises: Lambert at roughness 1, base color for metals, diffuse + specular
 // <= 1.
 TEST(Shared, MaterialsReflectNoMoreThanArrives) {
     const Material rough{"", glm::vec3(0.3F, 0.6F, 0.9F), 0.0F, 1.0F};
-    EXPECT_EQ(reflectance(rough).diffuse, rough.base_color);
-    EXPECT_EQ(reflectance(rough).specular, glm::vec3(0.0F));
+    EXPECT_EQ(brdf(rough).diffuse, rough.base_color);
+    EXPECT_EQ(brdf(rough).specular, glm::vec3(0.0F));
     for (float metallic = 0.0F; metallic <= 1.0F; metallic += 0.25F)
         for (float roughness = 0.0F; roughness <= 1.0F; roughness += 0.125F)
             for (const float base : {0.0F, 0.5F, 1.0F}) {
-                const Reflectance r = reflectance({"", glm::vec3(base), metallic, roughness});
+                const shared::Brdf r = brdf({"", glm::vec3(base), metallic, roughness});
                 EXPECT_LE(r.diffuse.x + r.specular.x, 1.0F + 1e-6F);
                 EXPECT_GE(r.diffuse.x, 0.0F);
                 EXPECT_GE(r.exponent, 0.0F);
                 EXPECT_LE(r.exponent, 1e4F);
             }
-    const Reflectance metal = reflectance({"", rough.base_color, 1.0F, 0.5F});
+    const shared::Brdf metal = brdf({"", rough.base_color, 1.0F, 0.5F});
     EXPECT_EQ(metal.diffuse, glm::vec3(0.0F));
     EXPECT_EQ(metal.specular, rough.base_color);
 }

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/render_options.h"
+
+#include "app/options.h"
+#include "app/sampler_options.h"
+
+#include <cstdint>
+#include <limits>
+
+namespace nearfield::app {
+namespace {
+
+void add_picture_options(CLI::App& sub, RenderCommand& c) {
+    add_number(sub, "--width", c.options.size_px.x, 1, 16384, "PX", "pixels");
+    add_number(sub, "--height", c.options.size_px.y, 0, 16384, "PX",
+               "pixels; 0: from the camera's aspect ratio");
+    sub.add_option("--camera", c.options.camera, "camera by name; the first by default")
+        ->type_name("NAME");
+    add_number(sub, "--samples-per-pixel", c.options.samples_per_pixel, 1, 1024, "N",
+               "n x n strata: 1 (the pixel's center), 4, 9");
+    add_number(sub, "--exposure-ev", c.display.exposure_ev, -100.0, 100.0, "EV",
+               "of the PNG, at ISO 100; automatic by default");
+    add_choice(sub, "--tonemap", c.display.tonemap,
+               {{"filmic", render::ToneMap::Filmic}, {"papers", render::ToneMap::Papers}},
+               "of the PNG: a film's curve, or 1 - exp(-L)");
+}
+
+void add_light_options(CLI::App& sub, RenderCommand& c) {
+    add_choice(
+        sub, "--sampler", c.options.sampler, sampler_choices(),
+        "sum: light is summed without noise, shadows and gloss are sampled; the others "
+        "sample all light, a shadow ray a sample; uniform, precomputed and pdis are there to "
+        "compare with");
+    add_number(
+        sub, "--samples", c.options.samples, 0, render::kMostSamples, "K",
+        "of a pixel and lamp; 0: 64, or as many as --error and --time-ms call for; with these "
+        "at most K");
+    add_number(sub, "--q", c.options.q, 0, 65536, "Q",
+               "of sum: windows of at most Q texels, coarser and faster; 0: exact");
+    add_choice(sub, "--sequence", c.options.sequence, sequence_choices(),
+               "of samplers; by default the sampler's own");
+    add_choice(sub, "--shift", c.options.shift, shift_choices(),
+               "how pixels' samples differ: random and blue-noise give noise, constant and "
+               "interleaved structured error");
+    add_number(sub, "--seed", c.options.seed, std::uint32_t{0},
+               std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
+    add_number(sub, "--error", c.options.error_rel, 0.0, 0.999, "E",
+               "add passes until the mean of sigma / radiance over lit pixels is E; 0: one pass");
+    add_number(sub, "--time-ms", c.time_ms, 0.0, 1e9, "MS",
+               "stop in time, loading included, writing not; 0: no limit");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& sub, RenderCommand& c) {
+    sub.add_option("scene", c.scene, "scene, .gltf or .glb (docs/scenes.md)")
+        ->required()
+        ->type_name("FILE");
+    add_checks(add_output(sub, c.output, "picture to write, NAME.exr"), "NAME.exr",
+               [](const std::string& path) { return path.ends_with(".exr"); });
+    sub.add_option("--png", c.png, "tone-mapped picture; by default NAME.png")->type_name("FILE");
+    add_choice(sub, "--device", c.device, {{"cpu", Device::Cpu}}, "what computes");
+    add_picture_options(sub, c);
+    add_light_options(sub, c);
+    add_number(sub, "--threads", c.options.threads, 0, 4096, "N",
+               "0: all cores; the picture is the same");
+    sub.add_flag("--sigma-measured", c.options.sigma_measured,
+                 "add the layer sigma_measured, from the lamps' own sigmas; slow");
+}
+
+}  // namespace nearfield::app

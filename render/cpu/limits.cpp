@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/cpu/limits.h"
+
+#include "formats/files/error.h"
+#include "render/cpu/render.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace nearfield::render {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+double machine_has_bytes() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string name; file >> name;) {
+        double kib = 0.0;
+        if (name == "MemAvailable:" && file >> kib)
+            return 1024.0 * kib;
+    }
+    return kUnknown;
+}
+
+/// The limit of address space less what is in use.
+double process_may_bytes() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return kUnknown;
+    double pages = 0.0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr double kPageBytes = 4096.0;
+    return std::max(static_cast<double>(limit.rlim_cur) - kPageBytes * pages, 0.0);
+}
+
+[[noreturn]] void refuse(const char* option, const std::string& expected, const std::string& got) {
+    throw Error{"cannot render", option, expected, got};
+}
+
+void check_range(const char* option, int value, int least, int most, const char* meaning = "") {
+    if (value < least || value > most)
+        refuse(option, fmt::format("{}{} ... {}", least, meaning, most), fmt::format("{}", value));
+}
+
+}  // namespace
+
+double available_memory_bytes() {
+    return std::min(machine_has_bytes(), process_may_bytes());
+}
+
+void check(const RenderOptions& options) {
+    check_range("width", options.size_px.x, 1, kMaxExtentPx);
+    check_range("height", options.size_px.y, 0, kMaxExtentPx, " (automatic)");
+    const int side =
+        static_cast<int>(std::lround(std::sqrt(std::max(options.samples_per_pixel, 0))));
+    if (options.samples_per_pixel < 1 || options.samples_per_pixel > 1024 ||
+        side * side != options.samples_per_pixel)
+        refuse("samples per pixel", "a square number, 1, 4, 9 ... 1024",
+               fmt::format("{}", options.samples_per_pixel));
+    if (options.samples == 1)
+        refuse("samples", "2 or more, whose spread tells the error", "1");
+    check_range("samples", options.samples, 0, kMostSamples, " (automatic)");
+    check_range("q", options.q, 0, 1 << 16, " (exact)");
+    if (options.q > 0 && options.sampler)
+        refuse("q", "0 with any sampler but sum", fmt::format("{}", options.q));
+    if (!(options.error_rel >= 0.0 && options.error_rel < 1.0))
+        refuse("error", "above 0 and below 1", fmt::format("{}", options.error_rel));
+    if (!(options.time_s >= 0.0))
+        refuse("time", "0 (no limit) or more", fmt::format("{} s", options.time_s));
+    check_range("threads", options.threads, 0, 4096, " (all)");
+}
+
+}  // namespace nearfield::render

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/cpu/passes.h"
+
+#include "render/cpu/pass_plan.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+namespace nearfield::render {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+// A first pass towards an error.
+constexpr int kFirstSamples = 16;
+// Shares of the time that is left: of the first pass, whose cost is known from trials alone, and of
+// later ones. The rest is for what the machine does besides.
+constexpr double kFirstShare = 0.7, kNextShare = 0.9;
+// No tile of a later pass starts when so much of the time is over: it must end, and sums become
+// means.
+constexpr double kLastTile = 0.98;
+// Trials render one tile of so many, and so many at least.
+constexpr std::size_t kTilesPerTrialTile = 32, kFewestTrialTiles = 8;
+// Two trials tell samples from the rest.
+constexpr int kTrialSamples = 8, kMoreTrialSamples = 24;
+// What a sum is coarsened to if an exact one takes too long.
+constexpr int kCoarserQ[] = {32, 16, 8, 4, 2};
+constexpr double kWorthwhile = 0.8;  // of the finer sum's time
+
+/// A picture in the making.
+struct Run {
+    Frame& frame;
+    const RenderHooks& hooks;
+    double start_s = 0;
+    std::vector<TileReport> reports;  // [tile]
+    std::vector<TileWeight> weights;  // [tile]
+    double drawn = 0;                 // samples of all passes; a mean over tiles
+    Noise noise;
+    double last_pass_s = 0;
+
+    double elapsed_s() const { return hooks.clock_s() - start_s; }
+    double left_s() const { return frame.options.time_s - elapsed_s(); }
+};
+
+template <typename Work>
+void for_each(std::size_t count, const Work& work) {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t)
+                work(t);
+        },
+        tbb::simple_partitioner());
+}
+
+glm::ivec2 first_pixel(const Frame& frame, std::size_t tile) {
+    const auto across = static_cast<std::size_t>(frame.tiles().x);
+    return glm::ivec2(static_cast<int>(tile % across), static_cast<int>(tile / across)) * kTilePx;
+}
+
+/// Of all work, as far as is known: towards the error by its square, and of the time.
+double fraction_done(const Run& run, double pass_samples_done) {
+    const RenderOptions& options = run.frame.options;
+    double fraction = 0.0;
+    if (options.time_s > 0.0)
+        fraction = run.elapsed_s() / options.time_s;
+    if (options.error_rel > 0.0 && run.drawn > 0.0) {
+        const double ratio = std::max(run.noise.error_rel() / options.error_rel, 1.0);
+        fraction =
+            std::max(fraction, (run.drawn + pass_samples_done) / (run.drawn * ratio * ratio));
+    }
+    return std::min(fraction, 1.0);
+}
+
+/// Adds a pass. Tiles that would start after end_s are left as they are.
+void render_pass(Run& run, const Pass& pass, double end_s) {
+    const bool is_only = !(run.frame.options.error_rel > 0.0 || run.frame.options.time_s > 0.0);
+    const double begin_s = run.hooks.clock_s();
+    const auto tiles = static_cast<double>(run.reports.size());
+    std::mutex mutex;
+    double done = 0;
+    for_each(run.reports.size(), [&](std::size_t tile) {
+        if (end_s < kForever && run.hooks.clock_s() > end_s)
+            return;
+        render_tile(run.frame, pass, first_pixel(run.frame, tile), run.reports[tile]);
+        run.weights[tile].add(pass);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (run.hooks.progress)
+            run.hooks.progress(
+                {is_only ? done / tiles : fraction_done(run, pass.samples * done / tiles),
+                 static_cast<int>(pass.index), run.noise.error_rel()});
+    });
+    run.drawn += pass.samples * done / tiles;
+    run.last_pass_s = run.hooks.clock_s() - begin_s;
+}
+
+/// From the sums as they are: weights cancel in errors relative to light. Only a last pass leaves
+/// tiles of different weights.
+Noise noise_so_far(const Run& run) {
+    const std::vector<Layer>& layers = run.frame.picture.layers;
+    const float root = root_of_variance(run.frame.options, run.weights.front());
+    Layer sigma = layers[kSigma];
+    for (float& value : sigma.values)
+        value = root * std::sqrt(value);
+    return summarize_noise(layers[kRadiance], sigma,
+                           run.frame.bias_layer ? &layers[*run.frame.bias_layer] : nullptr);
+}
+
+/// The time of a whole pass, from some of its tiles spread over the frame.
+double trial_s(Run& run, const Pass& pass) {
+    const std::size_t tiles = run.reports.size();
+    const std::size_t count =
+        std::min(tiles, std::max(tiles / kTilesPerTrialTile, kFewestTrialTiles));
+    const double begin_s = run.hooks.clock_s();
+    for_each(count, [&](std::size_t k) {
+        TileReport unused;
+        render_tile(run.frame, pass, first_pixel(run.frame, (2 * k + 1) * tiles / (2 * count)),
+                    unused);
+    });
+    return (run.hooks.clock_s() - begin_s) * static_cast<double>(tiles) /
+           static_cast<double>(count);
+}
+
+/// Coarsens the pass' sum until one with few samples fits the time that is left, if that makes it
+/// cheaper at all (where windows are small it does not). Returns the fixed cost.
+double coarsen(Run& run, const PassCost& exact, Pass& pass) {
+    PassCost cost = exact;
+    for (const int q : kCoarserQ) {
+        if (cost.of(kFewestSamples) <= kNextShare * run.left_s())
+            break;
+        Pass trial = pass;
+        trial.samples = kTrialSamples;
+        trial.q = q;
+        const double fixed_s =
+            std::max(trial_s(run, trial) - cost.per_sample_s * kTrialSamples, 0.0);
+        if (fixed_s < kWorthwhile * cost.fixed_s) {
+            cost.fixed_s = fixed_s;
+            pass.q = q;
+        }
+    }
+    return cost.fixed_s;
+}
+
+/// Samples, and Q where an exact sum would take too long, of the first pass within a time.
+PassCost plan_first_pass(Run& run, int most, Pass& pass) {
+    Pass trial = pass;
+    trial.samples = kTrialSamples;
+    const double time_s = trial_s(run, trial);
+    trial.samples = kMoreTrialSamples;
+    PassCost cost = cost_from(kTrialSamples, time_s, kMoreTrialSamples, trial_s(run, trial));
+    if (!run.frame.options.sampler && pass.q == 0)
+        cost.fixed_s = coarsen(run, cost, pass);
+    pass.samples = std::max(samples_within(cost, kFirstShare * run.left_s()), kFewestSamples);
+    pass.samples = std::min(pass.samples, most);
+    for (Layer& layer : run.frame.picture.layers)
+        std::fill(layer.values.begin(), layer.values.end(), 0.0F);
+    return cost;
+}
+
+/// 0: the picture is done.
+int next_samples(const Run& run, const Pass& last, PassCost cost, int most) {
+    const RenderOptions& options = run.frame.options;
+    const int drawn = static_cast<int>(run.drawn);
+    int samples = std::max(most - drawn, 0);
+    if (options.error_rel > 0.0)
+        samples = std::min(samples,
+                           samples_for_error(run.noise.mean_rel,
+                                             options.error_rel - run.noise.bias_mean_rel, drawn));
+    if (options.time_s > 0.0) {
+        // What the last pass took corrects the trials.
+        const double correction = run.last_pass_s / std::max(cost.of(last.samples), 1e-9);
+        cost.fixed_s *= correction;
+        cost.per_sample_s *= correction;
+        samples = std::min(samples, samples_within(cost, kNextShare * run.left_s()));
+        // A pass of few samples spends its time on sums that are known.
+        if (samples < std::max(kFewestSamples, drawn / 4) || !(run.noise.mean_rel > 0.0))
+            samples = 0;
+    }
+    return samples >= 2 ? samples : 0;
+}
+
+void add_bias_layer(Frame& frame) {
+    frame.bias_layer = frame.picture.layers.size();
+    frame.picture.layers.push_back({"bias_bound", {"Y"}, {}});
+    frame.picture.layers.back().values.assign(frame.picture.layers[kSigma].values.size(), 0.0F);
+}
+
+/// Merges in the tiles' order, and turns time spent by all threads into shares of the wall time.
+void merge(const Run& run, double wall_s, RenderReport& report) {
+    for (const TileReport& tile : run.reports) {
+        report.camera_rays += tile.camera_rays;
+        report.shadow_rays += tile.shadow_rays;
+        report.multiply_adds += static_cast<double>(tile.multiply_adds);
+        report.camera_s += tile.camera_s;
+        report.sums_s += tile.sums_s;
+        report.visibility_s += tile.visibility_s;
+    }
+    const double spent_s = report.camera_s + report.sums_s + report.visibility_s;
+    const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;
+    report.camera_s *= share;
+    report.sums_s *= share;
+    report.visibility_s *= share;
+}
+
+}  // namespace
+
+void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, RenderReport& report) {
+    const RenderOptions& options = frame.options;
+    const auto tiles =
+        static_cast<std::size_t>(frame.tiles().x) * static_cast<std::size_t>(frame.tiles().y);
+    Run run{frame, hooks, start_s, std::vector<TileReport>(tiles), std::vector<TileWeight>(tiles),
+            0.0,   {},    0.0};
+    const bool has_goal = options.error_rel > 0.0 || options.time_s > 0.0;
+    const int most = options.samples > 0 ? options.samples
+                     : has_goal          ? kMostSamples
+                                         : kUsualSamples;
+    Pass pass;
+    pass.samples = has_goal ? std::min(kFirstSamples, most) : most;
+    pass.q = options.q;
+    PassCost cost;
+    const double plan_start_s = now_s();
+    if (options.time_s > 0.0)
+        cost = plan_first_pass(run, most, pass);
+    report.plan_s = now_s() - plan_start_s;
+    if (pass.q > 0)
+        add_bias_layer(frame);
+
+    const double passes_start_s = now_s();
+    const int first_samples = pass.samples;
+    while (pass.samples > 0) {
+        pass.weight = static_cast<float>(pass.samples) / static_cast<float>(first_samples);
+        render_pass(run, pass,
+                    pass.index > 0 && options.time_s > 0.0 ? start_s + kLastTile * options.time_s
+                                                           : kForever);
+        run.noise = noise_so_far(run);
+        pass.samples = has_goal ? next_samples(run, pass, cost, most) : 0;
+        ++pass.index;
+    }
+    merge(run, now_s() - passes_start_s, report);
+    for_each(tiles, [&](std::size_t tile) {
+        finish_tile(frame, first_pixel(frame, tile), run.weights[tile]);
+    });
+    report.passes = static_cast<int>(pass.index);
+    report.samples = run.drawn;
+    report.q = pass.q;
+}
+
+}  // namespace nearfield::render

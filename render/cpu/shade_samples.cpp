@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/cpu/gloss.h"
+#include "render/cpu/shade.h"
+
+#include <algorithm>
+
+namespace nearfield::render {
+namespace {
+
+// Shifts of the lobe's samples are independent of the lamp's.
+constexpr std::uint32_t kLobeSeed = 0x9e3779b9U;
+
+/// One set of the lamp's samples, and of the lobe's where the surface is glossy.
+SetSums sample_set(const GlossQuery& gloss, int set, Scratch& scratch) {
+    const ShadeQuery& query = gloss.shade;
+    model::draw(gloss.lamp.file->sampling, scratch.views, gloss.sampler,
+                shift_of_set(query, set, query.seed), scratch.samples);
+    const bool is_glossy = shared::brdf_is_glossy(query.brdf);
+    SetSums result;
+    for (const model::LightSample& sample : scratch.samples) {
+        const auto s = static_cast<std::size_t>(sample.slab);
+        const PlacedSlab& slab = gloss.lamp.slabs[s];
+        const glm::dvec3 light(sample.light);
+        result.all += light;
+        const glm::dvec4 u_slab(glm::dvec2(sample.u_m), -slab.prepared->slab.delta_m, 1.0);
+        const glm::dvec3 from(slab.world_from_slab * u_slab);
+        if (!is_visible(gloss.lamp, gloss.tracer, query.hit, from, scratch))
+            continue;
+        result.lit += light;
+        result.visible += 1.0;
+        if (is_glossy)
+            result.reflected += light * weighted_lobe(gloss, scratch.views[s], sample,
+                                                      from - query.hit.position_world_m);
+    }
+    // A sampler's samples sum to the estimate, the lobe's have it as their mean; sets pool by size.
+    const double size = gloss.sampler.samples;
+    const double drawn = std::max<double>(static_cast<double>(scratch.samples.size()), 1.0);
+    result.count = size;
+    result.visible *= size / drawn;
+    result.lit *= size;
+    result.all *= size;
+    result.reflected *= size;
+    if (is_glossy)
+        result.reflected +=
+            lobe_samples(gloss, shift_of_set(query, set, query.seed ^ kLobeSeed), scratch);
+    return result;
+}
+
+}  // namespace
+
+LampLight shade_sampled(const Lamp& lamp,
+                        const Tracer& tracer,
+                        const ShadeQuery& query,
+                        const model::SamplerOptions& sampler,
+                        const LightSums* sums,
+                        std::size_t index,
+                        Scratch& scratch) {
+    scratch.views.resize(lamp.slabs.size());
+    model::SamplerOptions of_set = sampler;
+    of_set.samples = query.sets.size_of(0);
+    float total = 0.0F;
+    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
+        model::look(lamp.file->sampling[s], receiver_in_slab(lamp.slabs[s], query.hit), of_set,
+                    scratch.views[s]);
+        total += scratch.views[s].total;
+    }
+    if (!(total > 0.0F))
+        return {};
+    scratch.sets.clear();
+    for (int set = 0; set < query.sets.sets; ++set) {
+        of_set.samples = query.sets.size_of(set);
+        const GlossQuery gloss{lamp, tracer, query, of_set, total, to_viewer_local(query)};
+        scratch.sets.push_back(sample_set(gloss, set, scratch));
+    }
+    const glm::vec3 diffuse = diffuse_of(query);
+    const Estimated estimate = sums != nullptr ? combine_ratio(scratch.sets, glm::dvec3(diffuse),
+                                                               glm::dvec3(sums->irradiance[index]))
+                                               : combine_means(scratch.sets, glm::dvec3(diffuse));
+    SetSums all;
+    for (const SetSums& set : scratch.sets) {
+        all.all += set.all;
+        all.count += set.count;
+    }
+    const glm::vec3 unshadowed =
+        sums != nullptr ? sums->irradiance[index] : glm::vec3(all.all / all.count);
+    return light_of(lamp, query, estimate, unshadowed);
+}
+
+}  // namespace nearfield::render
