@@ -15,5 +15,6 @@ void add_pack(CLI::App& app);
 void add_info(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace nearfield::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/demo.h"
+#include "app/output.h"
 #include "formats/files/atomic_file.h"
 #include "formats/report/plot.h"
 
@@ -8,8 +9,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <thread>
 
 namespace nearfield::app {
 namespace {
@@ -21,20 +20,6 @@ constexpr const char* kNoGnuplot =
 
 std::string path_in(const DemoOptions& options, const std::string& name) {
     return (std::filesystem::path(options.folder) / name).string();
-}
-
-std::string cpu_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("model name")) {
-            return line.substr(std::min(line.size(), line.find(':') + 2));
-        }
-    }
-    return "unknown CPU";
-}
-
-std::string machine() {
-    return fmt::format("{}, {} threads", cpu_name(), std::thread::hardware_concurrency());
 }
 
 std::string percent(double share) {

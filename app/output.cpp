@@ -8,9 +8,12 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <thread>
 
 namespace nearfield::app {
 namespace {
@@ -54,6 +57,15 @@ RunRecord record_run(double start_s) {
 std::string cost(const RunRecord& run) {
     return fmt::format("{:.2f} s on {} thread{}, peak memory {:.0f} MiB", run.time_s, run.threads,
                        run.threads == 1 ? "" : "s", run.peak_memory_mib);
+}
+
+std::string machine() {
+    std::string name = "unknown CPU";
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("model name"))
+            name = line.substr(std::min(line.size(), line.find(':') + 2));
+    return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
 }
 
 void print(const std::string& result) {

@@ -39,6 +39,9 @@ RunRecord record_run(double start_s);
 /// "0.12 s on 2 threads, peak memory 30 MiB".
 std::string cost(const RunRecord& run);
 
+/// The CPU's name and its threads, for reports: "AMD EPYC, 2 threads".
+std::string machine();
+
 /// Writes a result to stdout, at once. Throws Error where that fails (disk full); a reader that has
 /// gone (`| head`) has had all it wanted.
 void print(const std::string& result);

@@ -4,6 +4,8 @@
 #include "formats/files/atomic_file.h"
 #include "formats/files/error.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -20,6 +22,9 @@ constexpr std::string_view kStyle =
     "table{border-collapse:collapse;margin:1rem 0}caption{text-align:left;color:#555}"
     "td,th{border:1px solid #ccc;padding:.2rem .6rem;text-align:left;"
     "font-variant-numeric:tabular-nums}th{background:#f2f2f2}"
+    ".grid{display:grid;gap:0 1rem;"
+    "grid-template-columns:repeat(auto-fill,minmax(max(18rem,100%/var(--columns) - 1rem),1fr))}"
+    ".scroll{overflow-x:auto}.short{white-space:nowrap}"
     "pre{background:#f2f2f2;padding:.8rem;overflow-x:auto}";
 
 std::string escape(std::string_view text) {
@@ -71,8 +76,11 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
+constexpr std::size_t kLongestUnbroken = 24;  // characters
+
 std::string table_html(const Table& table) {
-    std::string html = "<table>\n<caption>" + escape(table.caption) + "</caption>\n<tr>";
+    std::string html =
+        "<div class=\"scroll\"><table>\n<caption>" + escape(table.caption) + "</caption>\n<tr>";
     for (const std::string& column : table.columns) {
         html += "<th>" + escape(column) + "</th>";
     }
@@ -80,11 +88,13 @@ std::string table_html(const Table& table) {
     for (const std::vector<std::string>& row : table.rows) {
         html += "<tr>";
         for (const std::string& cell : row) {
-            html += "<td>" + escape(cell) + "</td>";
+            // A number stays with its unit; a table that gets too wide scrolls.
+            const bool is_short = cell.size() <= kLongestUnbroken;
+            html += (is_short ? "<td class=\"short\">" : "<td>") + escape(cell) + "</td>";
         }
         html += "</tr>\n";
     }
-    return html + "</table>\n";
+    return html + "</table></div>\n";
 }
 
 std::string section_html(const Section& section) {
@@ -92,12 +102,16 @@ std::string section_html(const Section& section) {
     for (const std::string& paragraph : section.paragraphs) {
         html += "<p>" + escape(paragraph) + "</p>\n";
     }
+    if (section.columns > 1)
+        html += fmt::format("<div class=\"grid\" style=\"--columns:{}\">\n", section.columns);
     for (const Image& image : section.images) {
         const std::string caption = escape(image.caption);
         html += "<figure><img alt=\"" + caption + "\" src=\"data:" + escape(image.media_type) +
                 ";base64," + base64(image.bytes) + "\"><figcaption>" + caption +
                 "</figcaption></figure>\n";
     }
+    if (section.columns > 1)
+        html += "</div>\n";
     for (const Table& table : section.tables) {
         html += table_html(table);
     }

@@ -28,6 +28,7 @@ struct Section {
     std::vector<Image> images;
     std::vector<Table> tables;
     std::string preformatted;  // a command, a machine; empty: none
+    int columns = 1;           // of images, as far as the window is wide enough
 };
 
 struct Page {

@@ -52,41 +52,80 @@ std::optional<std::string> run_gnuplot(const std::string& script) {
     return output;
 }
 
+bool is_shown(double value, bool log_scale) {
+    return std::isfinite(value) && (!log_scale || value > 0.0);
+}
+
+// A curve's points as a block of lines "x y low high"; a blank line interrupts its line.
+std::string data_block(const Plot& plot, std::size_t k) {
+    const Curve& curve = plot.curves[k];
+    std::string block = fmt::format("$curve{} << EOD\n", k);
+    for (std::size_t at = 0; at < curve.x.size(); ++at) {
+        const double x = curve.x[at], y = curve.y[at];
+        if (!is_shown(x, plot.log_x) || !is_shown(y, plot.log_y)) {
+            block += "\n";
+            continue;
+        }
+        const double low = curve.y_low.empty() ? y : curve.y_low[at];
+        const double high = curve.y_high.empty() ? y : curve.y_high[at];
+        // A bar that reaches below a logarithmic axis ends a decade under its point.
+        block += fmt::format("{:.8g} {:.8g} {:.8g} {:.8g}\n", x, y,
+                             is_shown(low, plot.log_y) ? low : 0.1 * y, high);
+    }
+    return block + "EOD\n";
+}
+
+// How gnuplot is to draw curve k: one or two elements of its plot command, bars below the points.
+std::string plot_elements(const Curve& curve, std::size_t k) {
+    const std::string color = curve.color.empty() ? fmt::format("linetype {}", k + 1)
+                                                  : "linecolor rgb " + quoted(curve.color);
+    const std::string data = fmt::format("$curve{} using 1:2", k);
+    const std::string title = " " + color + " title " + quoted(curve.name);
+    switch (curve.marks) {
+        case Marks::None:
+            return data + " with lines linewidth 1.5" + title;
+        case Marks::Circles:
+            return data + " with points pointtype 6 pointsize 1.4 linewidth 1.5" + title;
+        case Marks::Dots:
+            break;
+    }
+    const std::string bars =
+        curve.y_low.empty()
+            ? std::string()
+            : fmt::format("$curve{} using 1:3:(0):($4-$3) with vectors nohead linewidth 3 ", k) +
+                  color + " notitle, ";
+    return bars + data + " with linespoints linewidth 1.5 pointtype 7 pointsize 0.5" + title;
+}
+
 }  // namespace
 
 std::optional<Image> draw(const Plot& plot, const std::string& caption) {
     std::string script =
-        "set terminal svg size 900,480 background '#ffffff' noenhanced\n"
+        "set terminal svg size 900,480 font 'sans,15' background '#ffffff' noenhanced\n"
         "set grid\nset key outside top center horizontal\n";
     script += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x_label) +
               "\nset ylabel " + quoted(plot.y_label) + "\n";
     script += plot.log_y ? "set logscale y\nset format y '%g'\n" : "";
+    script += plot.log_x ? "set logscale x\nset format x '%g'\n" : "";
     std::string command = "plot ";
     for (std::size_t k = 0; k < plot.curves.size(); ++k) {
-        const Curve& curve = plot.curves[k];
-        script += fmt::format("$curve{} << EOD\n", k);
-        for (std::size_t point = 0; point < curve.x.size(); ++point) {
-            const bool is_drawn = std::isfinite(curve.x[point]) && std::isfinite(curve.y[point]) &&
-                                  (!plot.log_y || curve.y[point] > 0.0);
-            script += is_drawn ? fmt::format("{:.8g} {:.8g}\n", curve.x[point], curve.y[point])
-                               : std::string("\n");
-        }
-        script += "EOD\n";
-        command += fmt::format("{}$curve{} with lines linewidth 1.5 title {}", k == 0 ? "" : ", ",
-                               k, quoted(curve.name));
+        script += data_block(plot, k);
+        command += (k == 0 ? "" : ", ") + plot_elements(plot.curves[k], k);
     }
     const std::optional<std::string> svg = run_gnuplot(script + command + "\n");
     return svg ? std::optional<Image>({"image/svg+xml", *svg, caption}) : std::nullopt;
 }
 
 std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
-    std::string script =
-        "set terminal pngcairo size 1000,480 noenhanced\n"
-        "set palette defined (0 '#000020', 1 '#1040a0', 2 '#00a0a0', 3 '#20c020', 4 '#f0e020', "
-        "5 '#ff7000', 6 '#ffffff')\n";
+    std::string script = fmt::format("set terminal pngcairo size {},{} noenhanced\n",
+                                     map.picture_px.x, map.picture_px.y);
+    script += map.palette == Palette::Gray
+                  ? "set palette functions gray**0.45, gray**0.45, gray**0.45\n"
+                  : "set palette defined (0 '#000020', 1 '#1040a0', 2 '#00a0a0', 3 '#20c020', 4 "
+                    "'#f0e020', 5 '#ff7000', 6 '#ffffff')\n";
     script += "set title " + quoted(map.title) + "\nset xlabel " + quoted(map.x_label) +
               "\nset ylabel " + quoted(map.y_label) + "\nset cblabel " + quoted(map.value_label) +
-              "\n";
+              "\nset rmargin at screen 0.8\n";
     script += map.log_scale ? "set logscale cb\nset format cb '%g'\n" : "";
     script += fmt::format("set cbrange [{:.8g}:{:.8g}]\n", map.low, map.high);
     script += map.flip_x ? fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.upper.x, map.lower.x)
@@ -100,7 +139,9 @@ std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
             const double value =
                 map.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.size.x) +
                            static_cast<std::size_t>(column)];
-            script += fmt::format("{:.8g} {:.8g} {:.8g}\n", at.x, at.y, std::max(value, map.low));
+            script += std::isnan(value) ? fmt::format("{:.8g} {:.8g} NaN\n", at.x, at.y)
+                                        : fmt::format("{:.8g} {:.8g} {:.8g}\n", at.x, at.y,
+                                                      std::max(value, map.low));
         }
     }
     const std::optional<std::string> png =

@@ -12,15 +12,30 @@
 
 namespace nearfield::report {
 
+enum class Marks {
+    None,     // a line alone
+    Dots,     // a line and its points
+    Circles,  // large open circles, no line: what stands out among other curves' points
+};
+
 struct Curve {
     std::string name;
     std::vector<double> x, y;  // of equal length; points that are not finite are left out
+    Marks marks = Marks::None;
+    std::vector<double> y_low = {}, y_high = {};  // ends of error bars, [point]; empty: none
+    std::string color = {};                       // "#rrggbb"; empty: the next of gnuplot's
 };
 
 struct Plot {
     std::string title, x_label, y_label;  // labels with unit
     std::vector<Curve> curves;
     bool log_y = false;  // values <= 0 are left out
+    bool log_x = false;  // the same along x
+};
+
+enum class Palette {
+    FalseColor,  // black, blue, green, yellow, white
+    Gray,        // as a display shows it: half the value is three quarters of the brightness
 };
 
 /// A map of values in false color with a scale beside it.
@@ -28,10 +43,12 @@ struct HeatMap {
     std::string title, x_label, y_label, value_label;
     glm::dvec2 lower{0.0}, upper{0.0};  // of the map's rectangle, in the axes' units
     glm::ivec2 size{0};
-    std::vector<double> values;  // [row from the bottom][column]
+    std::vector<double> values;  // [row from the bottom][column]; NaN is left blank
     double low = 0, high = 0;    // range of the scale
     bool log_scale = false;      // values below `low` are drawn as `low`
     bool flip_x = false;         // x rises to the left
+    Palette palette = Palette::FalseColor;
+    glm::ivec2 picture_px{1000, 480};
 };
 
 /// Nothing where gnuplot is not installed or fails; the caller says so on its page.

@@ -4,7 +4,7 @@ import re
 
 from program import ProgramTest, main, run
 
-COMMANDS = ["demo", "simulate", "convert", "pack", "info", "probe", "render", "help"]
+COMMANDS = ["demo", "simulate", "convert", "pack", "info", "probe", "render", "bench", "help"]
 
 
 class Help(ProgramTest):

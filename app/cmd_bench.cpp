@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/bench/files.h"
+#include "app/bench/summary.h"
+#include "app/bench/sweeps.h"
+#include "app/commands.h"
+#include "app/options.h"
+#include "app/output.h"
+#include "app/progress.h"
+#include "formats/files/atomic_file.h"
+#include "formats/files/points.h"
+#include "sample_data/reference_lamp.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+namespace nearfield::app {
+namespace {
+
+enum class What { Accuracy };
+
+struct BenchCommand {
+    What what = What::Accuracy;
+    std::string lamp, points, page, csv;
+    bool json = false;
+    bench::SweepOptions options;
+};
+
+LightField read_lamp(const BenchCommand& command) {
+    return command.lamp.empty() ? sample_data::make_reference_lamp()
+                                : read_lightfield(command.lamp);
+}
+
+std::vector<model::Receiver> read_receivers(const BenchCommand& command) {
+    if (command.points.empty())
+        return sample_data::reference_receivers();
+    const PointList points = read_points(command.points);
+    std::vector<model::Receiver> receivers;
+    for (std::size_t k = 0; k < points.positions_m.size(); ++k)
+        receivers.push_back({points.positions_m[k], points.normals[k]});
+    return receivers;
+}
+
+bench::Setup describe(const BenchCommand& command,
+                      const LightField& lamp,
+                      std::size_t receivers,
+                      const std::string& command_line) {
+    const Slab& slab = lamp.slabs.front();
+    return {
+        fmt::format(
+            "{}, {}{} x {} images of {} x {} texels, {} channel{}, {} basis",
+            command.lamp.empty() ? "the reference lamp" : command.lamp,
+            lamp.slabs.size() == 1 ? "" : fmt::format("{} slabs, the first ", lamp.slabs.size()),
+            slab.grid.x, slab.grid.y, slab.texels.x, slab.texels.y, slab.channels,
+            slab.channels == 1 ? "" : "s", slab.profile.name),
+        command.points.empty() ? fmt::format("{}, scattered up to 6.5 m ahead of it", receivers)
+                               : fmt::format("the {} of {}", receivers, command.points),
+        command_line, machine()};
+}
+
+void run(const BenchCommand& command, const std::string& command_line) {
+    check_outputs({command.page, command.csv}, {command.lamp, command.points});
+    const LightField lamp = read_lamp(command);
+    const std::vector<model::Receiver> receivers = read_receivers(command);
+    const bench::Setup setup = describe(command, lamp, receivers.size(), command_line);
+    ProgressLine progress("bench accuracy");
+    const bench::Findings findings =
+        bench::run_sweeps(lamp.slabs, receivers, command.options,
+                          [&](double fraction) { progress.update(fraction); });
+    progress.finish();
+
+    if (!command.csv.empty())
+        write_file(bench::as_csv(findings), command.csv);
+    bench::write_page(findings, setup, command.page);
+    if (command.json)
+        print(bench::as_json(findings, setup));
+    for (const std::string& sentence : bench::sentences(bench::summarize(findings)))
+        say(sentence + "\n");
+    if (findings.skipped > 0)
+        say(fmt::format("settings left out by --time-limit-s: {}\n", findings.skipped));
+    say(fmt::format("{}: {} settings measured in {:.0f} s on {} threads\n", command.page,
+                    findings.results.size(), findings.time_s, findings.threads));
+}
+
+// The call as it can be repeated: options that were given, in the order of the help.
+std::string command_line(const CLI::App& command) {
+    std::string text = "nearfield " + command.get_name();
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0)
+            continue;
+        text += option->get_positional() ? "" : " " + option->get_name();
+        if (option->get_items_expected_max() > 0)
+            text += " " + option->as<std::string>();
+    }
+    return text;
+}
+
+// "4,16,63": numbers 1 ... most, sorted.
+void add_sizes(CLI::App& command,
+               const std::string& name,
+               std::vector<int>& values,
+               int most,
+               const std::string& help) {
+    const auto parse = [most](const std::string& text) {
+        std::vector<int> sizes;
+        for (const std::string& word : CLI::detail::split(text, ',')) {
+            int size = 0;
+            if (!CLI::detail::lexical_cast(word, size) || size < 1 || size > most)
+                return std::vector<int>{};
+            sizes.push_back(size);
+        }
+        std::sort(sizes.begin(), sizes.end());
+        sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+        return sizes;
+    };
+    CLI::Option* option = command.add_option_function<std::string>(
+        name, [&values, parse](const std::string& text) { values = parse(text); }, help);
+    option->default_str(fmt::format("{}", fmt::join(values, ",")))->type_name("N,N,...");
+    add_checks(option, fmt::format("numbers 1 ... {}, separated by commas", most),
+               [parse](const std::string& text) { return !parse(text).empty(); });
+}
+
+// Some of a few words, separated by commas; all by default.
+void add_words(CLI::App& command,
+               const std::string& name,
+               std::vector<std::string>& values,
+               const std::vector<std::string>& known,
+               const std::string& help) {
+    CLI::Option* option = command.add_option_function<std::string>(
+        name, [&values](const std::string& text) { values = CLI::detail::split(text, ','); },
+        fmt::format("{}: {}; all by default", help, fmt::join(known, ",")));
+    add_checks(option->type_name("NAME,..."), fmt::format("{}", fmt::join(known, ", ")),
+               [known](const std::string& text) {
+                   const std::vector<std::string> words = CLI::detail::split(text, ',');
+                   return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+                       return std::find(known.begin(), known.end(), word) != known.end();
+                   });
+               });
+}
+
+void add_sweep_options(CLI::App& sub, bench::SweepOptions& options) {
+    constexpr int kMostK = 1 << 24, kMostQ = 1 << 16;
+    add_words(sub, "--samplers", options.samplers, bench::sampler_names(), "samplers to measure");
+    add_words(sub, "--sweeps", options.sweeps, bench::sweep_names(), "what to vary");
+    add_sizes(sub, "--k", options.k, kMostK, "samples a receiver");
+    add_sizes(sub, "--q", options.q, kMostQ, "widest window in texels, of sum; exact comes always");
+    add_number(sub, "--repeats", options.repeats, 1, 1000, "N",
+               "runs with other random numbers, over which errors are pooled");
+    add_number(sub, "--time-limit-s", options.time_limit_s, 1.0, 1e6, "S",
+               "settings that would take longer are left out");
+    add_number(sub, "--threads", options.threads, 0, 4096, "N",
+               "0: all cores; errors are the same");
+    add_number(sub, "--seed", options.seed, std::uint32_t{0},
+               std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+    auto c = std::make_shared<BenchCommand>();
+    CLI::App* sub = add_command(
+        app, "bench", "Measures what accuracy costs in time: every sampler, every knob",
+        {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
+         "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
+         "nearfield bench accuracy --samplers sum,pdis --sweeps samplers --k 16,63,1000 -o "
+         "pdis.html"});
+    add_choice(*sub, "what", c->what, {{"accuracy", What::Accuracy}}, "error against time")
+        ->required();
+    sub->add_option(
+           "luminaire", c->lamp,
+           "luminaire or light field, .exr; by default the reference lamp (nearfield simulate "
+           "reference)")
+        ->type_name("FILE");
+    CLI::Option* points = sub->add_option(
+        "--receivers", c->points,
+        "CSV with columns x_m,y_m,z_m,nx,ny,nz in the luminaire's frame; by default those "
+        "of the reference lamp");
+    points->type_name("FILE");
+    sub->add_option("-o,--output", c->page, "page to write, .html")->required()->type_name("FILE");
+    sub->add_option("--csv", c->csv, "all measurements as a table")->type_name("FILE");
+    sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
+    add_sweep_options(*sub, c->options);
+    sub->callback([c, sub] { run(*c, command_line(*sub)); });
+}
+
+}  // namespace nearfield::app
