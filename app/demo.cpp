@@ -21,10 +21,6 @@ constexpr const char* kLuminaireFile = "headlight.luminaire.exr";
 // cd/m^2, is 1.7 times what the film's curve calls white, and the road a tenth of it.
 constexpr double kExposureEv = 4.6;
 
-std::string path_in(const DemoOptions& options, const std::string& name) {
-    return (std::filesystem::path(options.folder) / name).string();
-}
-
 // Runs one stage and notes its time and the process' memory; `work` returns its error estimate in
 // words.
 template <typename Work>
@@ -126,6 +122,10 @@ void make_lamp(const DemoOptions& options, const DemoProgress& progress, DemoRes
 }
 
 }  // namespace
+
+std::string path_in(const DemoOptions& options, const std::string& name) {
+    return (std::filesystem::path(options.folder) / name).string();
+}
 
 DemoResult run_demo(const DemoOptions& options, const DemoProgress& progress) {
     std::error_code failure;

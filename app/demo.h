@@ -38,6 +38,9 @@ struct DemoResult {
     glm::ivec2 size_px{0};
 };
 
+/// The path of a file of the demo's folder.
+std::string path_in(const DemoOptions& options, const std::string& name);
+
 /// Called with a stage's name and how far it is.
 using DemoProgress = std::function<void(const std::string& stage, double fraction)>;
 

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace nearfield::app {
 namespace {
@@ -17,10 +16,6 @@ constexpr double kMapDistance_m = 10.0;
 constexpr const char* kNoGnuplot =
     "gnuplot is not installed or failed, so the plots of this section are missing (Debian package "
     "gnuplot-nox).";
-
-std::string path_in(const DemoOptions& options, const std::string& name) {
-    return (std::filesystem::path(options.folder) / name).string();
-}
 
 std::string percent(double share) {
     return fmt::format("{:.2g} %", 100.0 * share);

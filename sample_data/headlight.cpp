@@ -57,10 +57,6 @@ double limit(double x, double lower, double upper) {
     return raised > upper ? upper : raised;
 }
 
-double square(double x) {
-    return x * x;
-}
-
 // 0 at x <= 0, 1 at x >= 1, twice differentiable between.
 double smooth_step(double x) {
     const double t = limit(x, 0.0, 1.0);
@@ -245,7 +241,8 @@ Aperture headlight_aperture() {
         const double x_m = (k - 0.5 * kFacetCount.x) * kFacet_m.x;
         aperture.breaks_x_m.push_back(x_m);
         // Where the rim crosses a vertical edge, a line's integral has a kink.
-        const double on_rim_m = kLensHalf_m.y * std::sqrt(1.0 - square(x_m / kLensHalf_m.x));
+        const double x = x_m / kLensHalf_m.x;
+        const double on_rim_m = kLensHalf_m.y * std::sqrt(1.0 - x * x);
         aperture.breaks_y_m.insert(aperture.breaks_y_m.end(), {-on_rim_m, on_rim_m});
     }
     for (int k = 1; k < kFacetCount.y; ++k) {

@@ -2,6 +2,7 @@
 #include "formats/scene/gltf_accessor.h"
 
 #include "formats/files/error.h"
+#include "formats/scene/gltf_guard.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -11,8 +12,6 @@
 
 namespace nearfield::gltf {
 namespace {
-
-constexpr const char* kWhat = "cannot read scene";
 
 /// A checked accessor: element i begins at data + i * stride and lies within the buffer.
 struct Elements {
@@ -24,7 +23,7 @@ struct Elements {
 template <typename T>
 const T& at(const std::vector<T>& list, int index, const char* name, const std::string& where) {
     if (index < 0 || static_cast<std::size_t>(index) >= list.size())
-        throw Error{kWhat, where, fmt::format("an index into {} {}", list.size(), name),
+        throw Error{kReadingScene, where, fmt::format("an index into {} {}", list.size(), name),
                     fmt::format("{}", index)};
     return list[static_cast<std::size_t>(index)];
 }
@@ -47,7 +46,7 @@ Elements elements(const tinygltf::Model& model,
     const auto& accessor = at(model.accessors, index, "accessors", where);
     const std::string place = fmt::format("{} (accessors[{}])", where, index);
     if (accessor.sparse.isSparse)
-        throw Error{kWhat, place, "an accessor that is not sparse", "a sparse one"};
+        throw Error{kReadingScene, place, "an accessor that is not sparse", "a sparse one"};
     const auto& view = at(model.bufferViews, accessor.bufferView, "bufferViews", place);
     const auto& buffer = at(model.buffers, view.buffer, "buffers", place);
 
@@ -55,12 +54,12 @@ Elements elements(const tinygltf::Model& model,
     const std::size_t element = components * component_bytes(accessor.componentType);
     const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
     if (view.byteOffset + view.byteLength > buffer.data.size())
-        throw Error{kWhat, fmt::format("{}, bufferViews[{}]", place, accessor.bufferView),
+        throw Error{kReadingScene, fmt::format("{}, bufferViews[{}]", place, accessor.bufferView),
                     fmt::format("bytes within the buffer's {}", buffer.data.size()),
                     fmt::format("{} + {}", view.byteOffset, view.byteLength)};
     if (accessor.count == 0 || stride < element ||
         accessor.byteOffset + stride * (accessor.count - 1) + element > view.byteLength)
-        throw Error{kWhat, place,
+        throw Error{kReadingScene, place,
                     fmt::format("elements of {} bytes within {} bytes of bufferViews[{}]", element,
                                 view.byteLength, accessor.bufferView),
                     fmt::format("{} elements every {} bytes from {}", accessor.count, stride,
@@ -80,7 +79,7 @@ std::vector<Vector> read_vectors(const tinygltf::Model& model,
         elements(model, accessor, static_cast<std::size_t>(Vector::length()), where);
     if (source.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT ||
         model.accessors[static_cast<std::size_t>(accessor)].type != Vector::length())
-        throw Error{kWhat, where,
+        throw Error{kReadingScene, where,
                     fmt::format("an accessor of VEC{} of float (5126)", Vector::length()),
                     fmt::format("component type {}", source.component_type)};
     std::vector<Vector> values(source.count);
@@ -88,7 +87,7 @@ std::vector<Vector> read_vectors(const tinygltf::Model& model,
         std::memcpy(&values[i], source.data + i * source.stride, sizeof(Vector));
         for (int axis = 0; axis < Vector::length(); ++axis)
             if (!(std::abs(values[i][axis]) <= kLargest))
-                throw Error{kWhat, fmt::format("{}, element {}", where, i),
+                throw Error{kReadingScene, fmt::format("{}, element {}", where, i),
                             fmt::format("numbers from {:g} to {:g}", -kLargest, kLargest),
                             fmt::format("{}", values[i][axis])};
     }
@@ -122,7 +121,8 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model,
                             source.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (!is_integer ||
         model.accessors[static_cast<std::size_t>(accessor)].type != TINYGLTF_TYPE_SCALAR)
-        throw Error{kWhat, where, "an accessor of SCALAR of unsigned integers (5121, 5123, 5125)",
+        throw Error{kReadingScene, where,
+                    "an accessor of SCALAR of unsigned integers (5121, 5123, 5125)",
                     fmt::format("component type {}", source.component_type)};
     std::vector<std::uint32_t> values(source.count);
     for (std::size_t i = 0; i < source.count; ++i) {
@@ -130,7 +130,7 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model,
         std::memcpy(&values[i], source.data + i * source.stride,
                     component_bytes(source.component_type));
         if (values[i] >= limit)
-            throw Error{kWhat, fmt::format("{}, element {}", where, i),
+            throw Error{kReadingScene, fmt::format("{}, element {}", where, i),
                         fmt::format("an index below {}", limit), fmt::format("{}", values[i])};
     }
     return values;

@@ -19,7 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kWhat = "cannot read scene";
 // The library walks documents by recursion; glTF itself needs 10 levels.
 constexpr int kMaxNesting = 64;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;  // "JSON", "BIN\0"
@@ -27,15 +26,15 @@ constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;  // "JS
 std::string read_bytes(const std::string& path) {
     std::error_code failed;
     if (!std::filesystem::is_regular_file(path, failed))
-        throw Error{kWhat, path, "a file", "none"};
+        throw Error{kReadingScene, path, "a file", "none"};
     const auto size = std::filesystem::file_size(path, failed);
     // The library counts in 32 bits.
     if (failed || size > static_cast<std::uintmax_t>(std::numeric_limits<std::int32_t>::max()))
-        throw Error{kWhat, path, "at most 2 GiB", fmt::format("{} bytes", size)};
+        throw Error{kReadingScene, path, "at most 2 GiB", fmt::format("{} bytes", size)};
     std::string bytes(static_cast<std::size_t>(size), '\0');
     std::ifstream file(path, std::ios::binary);
     if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
-        throw Error{kWhat, path, fmt::format("{} bytes", size), "fewer"};
+        throw Error{kReadingScene, path, fmt::format("{} bytes", size), "fewer"};
     return bytes;
 }
 
@@ -54,14 +53,14 @@ std::string read_chunk(const std::string& bytes,
                        const std::string& path) {
     const std::string where = fmt::format("{}, byte {}", path, offset);
     if (bytes.size() < offset + 8)
-        throw Error{kWhat, where, "a GLB chunk", "end of file"};
+        throw Error{kReadingScene, where, "a GLB chunk", "end of file"};
     const std::uint32_t length = read_u32(bytes, offset);
     if (length > bytes.size() - offset - 8)
-        throw Error{kWhat, where,
+        throw Error{kReadingScene, where,
                     fmt::format("a chunk of at most {} bytes", bytes.size() - offset - 8),
                     fmt::format("{}", length)};
     if (read_u32(bytes, offset + 4) != type)
-        throw Error{kWhat, where, fmt::format("chunk type {:#x}", type),
+        throw Error{kReadingScene, where, fmt::format("chunk type {:#x}", type),
                     fmt::format("{:#x}", read_u32(bytes, offset + 4))};
     return bytes.substr(offset + 8, length);
 }
@@ -75,10 +74,10 @@ GuardedFile split(std::string bytes, const std::string& path) {
     }
     file.is_binary = true;
     if (bytes.size() < 20 || read_u32(bytes, 4) != 2)
-        throw Error{kWhat, path + ", byte 4", "GLB version 2",
+        throw Error{kReadingScene, path + ", byte 4", "GLB version 2",
                     bytes.size() < 20 ? "end of file" : fmt::format("{}", read_u32(bytes, 4))};
     if (read_u32(bytes, 8) != bytes.size())
-        throw Error{kWhat, path + ", byte 8", fmt::format("length {}", bytes.size()),
+        throw Error{kReadingScene, path + ", byte 8", fmt::format("length {}", bytes.size()),
                     fmt::format("{}", read_u32(bytes, 8))};
     file.json = read_chunk(bytes, 12, kJsonChunk, path);
     const std::size_t next = 20 + file.json.size();
@@ -90,14 +89,14 @@ GuardedFile split(std::string bytes, const std::string& path) {
 json parse(const std::string& text, const std::string& path) {
     const auto limit_nesting = [&](int depth, json::parse_event_t /*event*/, json& /*value*/) {
         if (depth > kMaxNesting)
-            throw Error{kWhat, path, fmt::format("JSON nested at most {} deep", kMaxNesting),
-                        "deeper"};
+            throw Error{kReadingScene, path,
+                        fmt::format("JSON nested at most {} deep", kMaxNesting), "deeper"};
         return true;
     };
     try {
         return json::parse(text, limit_nesting);
     } catch (const json::exception& error) {
-        throw Error{kWhat, path, "JSON", error.what()};
+        throw Error{kReadingScene, path, "JSON", error.what()};
     }
 }
 
@@ -124,10 +123,11 @@ void check_members(const json& value, const std::string& place, const std::strin
             if (key == "extensions" || key == "extras")
                 continue;
             if (indices.count(key) != 0 && !is_index(member))
-                throw Error{kWhat, path + ": " + inner, "an integer from 0 to 2^31 - 1",
+                throw Error{kReadingScene, path + ": " + inner, "an integer from 0 to 2^31 - 1",
                             member.dump().substr(0, 40)};
             if (numbers.count(key) != 0 && !member.is_number())
-                throw Error{kWhat, path + ": " + inner, "a number", member.dump().substr(0, 40)};
+                throw Error{kReadingScene, path + ": " + inner, "a number",
+                            member.dump().substr(0, 40)};
         }
         if (member.is_structured())
             check_members(member, inner, path);
@@ -147,7 +147,7 @@ void check_array(const json& object,
                           return integers ? is_index(element) : element.is_number();
                       });
     if (!fits)
-        throw Error{kWhat, where + "." + key,
+        throw Error{kReadingScene, where + "." + key,
                     integers    ? std::string("an array of indices")
                     : size == 0 ? std::string("an array of numbers")
                                 : fmt::format("an array of {} numbers", size),
@@ -188,21 +188,21 @@ void check_buffers(const json& document, const GuardedFile& file, const std::str
         std::uintmax_t available = 0;
         if (uri.empty()) {
             if (!file.is_binary || index != 0)
-                throw Error{kWhat, where + ".uri", "a URI", "none"};
+                throw Error{kReadingScene, where + ".uri", "a URI", "none"};
             available = file.binary.size();
         } else if (uri.rfind("data:", 0) == 0) {
             available = uri.size() / 4 * 3;
         } else {
             if (!uris.insert(uri).second)
-                throw Error{kWhat, where + ".uri", "a file named once", uri.substr(0, 60)};
+                throw Error{kReadingScene, where + ".uri", "a file named once", uri.substr(0, 60)};
             const std::string side_file = resolve_uri(uri, file.base_folder, where + ".uri");
             std::error_code failed;
             if (!std::filesystem::is_regular_file(side_file, failed))
-                throw Error{kWhat, where + ".uri", "an existing file", side_file};
+                throw Error{kReadingScene, where + ".uri", "an existing file", side_file};
             available = std::filesystem::file_size(side_file, failed);
         }
         if (length == 0 || length > available)
-            throw Error{kWhat, where + ".byteLength",
+            throw Error{kReadingScene, where + ".byteLength",
                         fmt::format("1 ... {} (the bytes there)", available),
                         fmt::format("{}", length)};
         ++index;
@@ -212,14 +212,14 @@ void check_buffers(const json& document, const GuardedFile& file, const std::str
 /// The top level arrays are arrays of objects, as every later check assumes.
 void check_shape(const json& document, const std::string& path) {
     if (!document.is_object())
-        throw Error{kWhat, path, "a JSON object", document.type_name()};
+        throw Error{kReadingScene, path, "a JSON object", document.type_name()};
     const json asset = document.value("asset", json::object());
     const std::string version =
         asset.is_object() && asset.contains("version") && asset["version"].is_string()
             ? asset["version"].get<std::string>()
             : "none";
     if (version.rfind("2.", 0) != 0)
-        throw Error{kWhat, path + ": asset.version", "\"2.0\"", version.substr(0, 40)};
+        throw Error{kReadingScene, path + ": asset.version", "\"2.0\"", version.substr(0, 40)};
     for (const char* key : {"scenes", "nodes", "meshes", "materials", "cameras", "accessors",
                             "bufferViews", "buffers"}) {
         const json array = document.value(key, json::array());
@@ -227,7 +227,7 @@ void check_shape(const json& document, const std::string& path) {
             array.is_array() &&
             std::all_of(array.begin(), array.end(), [](const json& e) { return e.is_object(); });
         if (!fits)
-            throw Error{kWhat, fmt::format("{}: {}", path, key), "an array of objects",
+            throw Error{kReadingScene, fmt::format("{}: {}", path, key), "an array of objects",
                         array.dump().substr(0, 40)};
     }
 }
@@ -269,7 +269,8 @@ std::string resolve_uri(const std::string& uri,
     }
     if (decoded.empty() || decoded[0] == '/' || decoded.find(':') != std::string::npos ||
         decoded.find('\0') != std::string::npos)
-        throw Error{kWhat, where, "a path relative to the scene", "'" + uri.substr(0, 60) + "'"};
+        throw Error{kReadingScene, where, "a path relative to the scene",
+                    "'" + uri.substr(0, 60) + "'"};
     return (std::filesystem::path(base_folder) / decoded).string();
 }
 
@@ -282,7 +283,7 @@ GuardedFile read_guarded(const std::string& path) {
         check_nodes(document, path);
         check_buffers(document, file, path);
     } catch (const json::exception& error) {
-        throw Error{kWhat, path, "glTF 2.0", error.what()};
+        throw Error{kReadingScene, path, "glTF 2.0", error.what()};
     }
     for (const char* unused :
          {"images", "textures", "samplers", "animations", "skins", "extensions", "extras"})

@@ -7,6 +7,9 @@
 
 namespace nearfield::gltf {
 
+/// What all errors of reading a scene say first.
+constexpr const char* kReadingScene = "cannot read scene";
+
 /// A file's content, after checks, with what this project does not use taken out (images,
 /// animations, skins).
 struct GuardedFile {

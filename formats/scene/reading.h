@@ -3,6 +3,7 @@
 /// with file and JSON place; they are called in this order.
 #pragma once
 
+#include "formats/scene/gltf_guard.h"
 #include "formats/scene/scene.h"
 
 #include <tiny_gltf.h>
@@ -13,7 +14,6 @@
 
 namespace nearfield::gltf {
 
-constexpr const char* kReadingScene = "cannot read scene";
 constexpr const char* kLuminaireExtension = "NEARFIELD_luminaire";
 
 /// The document and what its parts have become.
