@@ -150,8 +150,8 @@ float marginal_density_omega(const SamplingSlab& slab,
                              float lamp_total,
                              glm::vec2 u_m);
 
-/// The inverse of sampling within an image (Systematic) or the cell of it that holds u (Cells): the
-/// coordinates in [0, 1)^2 that give u.
+/// The inverse of sampling within an image (Cells: within a cell): the coordinates in [0, 1)^2 that
+/// give u. 0 where the sampler draws nothing there.
 glm::vec2 inverse_u(const SamplingSlab& slab,
                     const SamplingView& view,
                     const SamplerOptions& options,

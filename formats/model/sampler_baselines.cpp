@@ -226,9 +226,6 @@ void draw_precomputed(const Drawing& drawing) {
     for (std::size_t k = 0; k < drawing.slabs.size(); ++k) {
         const Slab& slab = drawing.slabs[k].prepared.slab;
         SamplingView& view = drawing.views[k];
-        const auto whole = [](int texels) {
-            return AxisBox{0, texels - 1, 0.0F, 0.0F, 1.0F, texels > 1 ? 1.0F : 0.0F, 1.0F};
-        };
         const glm::dvec2 t_per_s(
             std::abs(view.x_view.s_keep + view.x_view.s_slope) * view.x_view.t_scale,
             std::abs(view.y_view.s_keep + view.y_view.s_slope) * view.y_view.t_scale);
@@ -237,8 +234,8 @@ void draw_precomputed(const Drawing& drawing) {
             for (; q < options.samples && (q + start) / count * total < sum; ++q) {
                 const auto image = static_cast<int>(m);
                 const auto point = invert_image(
-                    drawing.slabs[k], view, options, image, whole(slab.texels.x),
-                    whole(slab.texels.y),
+                    drawing.slabs[k], view, options, image, whole_axis(slab.texels.x),
+                    whole_axis(slab.texels.y),
                     plane_point(options.sequence, static_cast<std::uint32_t>(q),
                                 static_cast<std::uint32_t>(options.samples), drawing.shift));
                 if (!point)

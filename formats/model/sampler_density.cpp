@@ -17,6 +17,7 @@ using shared::AxisBox;
 struct SeenPoint {
     glm::vec2 u_m, e;
     glm::ivec2 texel;
+    glm::vec2 in_texel;  // along S, in [0, 1)
     bool is_on_s;
 };
 
@@ -28,6 +29,7 @@ SeenPoint see(const SamplingView& view, glm::vec2 u_m) {
     return {u_m,
             {e_of_u(view.x_view, u_m.x), e_of_u(view.y_view, u_m.y)},
             texel,
+            glm::fract(glm::vec2((s.x - x.s_min) / x.texel, (s.y - y.s_min) / y.texel)),
             texel.x >= 0 && texel.x < x.texels && texel.y >= 0 && texel.y < y.texels};
 }
 
@@ -72,15 +74,51 @@ float texel_luminance(const Slab& slab, int image, glm::ivec2 texel) {
     return luminance_of(slab, texel_color(slab, image, texel));
 }
 
+// How far a stored CDF rises within a box, from its beginning to a fraction of texel i's part of
+// it.
+float rise_until(const float* cdf, const AxisBox& box, int i, float fraction) {
+    const auto step = [&](int k) { return cdf[k + 1] - cdf[k]; };
+    const float of_first = std::min(box.first_width / box.texel_width, 1.0F) * step(box.first);
+    if (i == box.first)
+        return fraction * of_first;
+    const float part = i == box.last ? std::min(box.last_width / box.texel_width, 1.0F) : 1.0F;
+    return of_first + (cdf[i] - cdf[box.first + 1]) + fraction * part * step(i);
+}
+
 // Density per u along one axis of the restricted stored CDF: its step at a texel over the texel's
 // width on U and the CDF's rise over the box.
 float cdf_density(const float* cdf, const AxisBox& box, int texel, float texel_width_u_m) {
-    const auto step = [&](int i) { return cdf[i + 1] - cdf[i]; };
-    float rise = std::min(box.first_width / box.texel_width, 1.0F) * step(box.first);
-    if (box.last > box.first)
-        rise += cdf[box.last] - cdf[box.first + 1] +
-                std::min(box.last_width / box.texel_width, 1.0F) * step(box.last);
-    return rise > 0.0F ? step(texel) / (rise * texel_width_u_m) : 0.0F;
+    const float rise = rise_until(cdf, box, box.last, 1.0F);
+    return rise > 0.0F ? (cdf[texel + 1] - cdf[texel]) / (rise * texel_width_u_m) : 0.0F;
+}
+
+// An image's own CDFs: over columns, and over the rows of one of them.
+struct StoredCdfs {
+    const float *marginal, *conditional;
+};
+
+StoredCdfs stored_cdfs(const SamplingSlab& slab, int image, int column) {
+    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
+    const auto h = static_cast<std::size_t>(slab.prepared.slab.texels.y);
+    const auto m = static_cast<std::size_t>(image);
+    return {
+        slab.tables.marginal_cdf.data() + m * (w + 1),
+        slab.tables.conditional_cdf.data() + (m * w + static_cast<std::size_t>(column)) * (h + 1)};
+}
+
+// The coordinates at which an image's own CDFs give a place in a box.
+glm::vec2 invert_stored(const SamplingSlab& slab,
+                        int image,
+                        const AxisBox& x,
+                        const AxisBox& y,
+                        const TexelPoint& place) {
+    const StoredCdfs cdfs = stored_cdfs(slab, image, place.texel.x);
+    const auto along = [](const float* cdf, const AxisBox& box, int i, float fraction) {
+        return shared::fraction_of(rise_until(cdf, box, i, fraction),
+                                   rise_until(cdf, box, box.last, 1.0F));
+    };
+    return {along(cdfs.marginal, x, place.texel.x, place.fraction.x),
+            along(cdfs.conditional, y, place.texel.y, place.fraction.y)};
 }
 
 // Density per m^2 on U of an image's own CDFs within boxes.
@@ -90,17 +128,12 @@ float stored_density(const SamplingSlab& slab,
                      const AxisBox& x,
                      const AxisBox& y,
                      glm::ivec2 texel) {
-    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
-    const auto h = static_cast<std::size_t>(slab.prepared.slab.texels.y);
-    const auto m = static_cast<std::size_t>(image);
     const float distance = view.x_texels.delta + view.x_texels.height;
     const glm::ivec2 inside(std::clamp(texel.x, x.first, x.last),
                             std::clamp(texel.y, y.first, y.last));
-    const float* conditional =
-        slab.tables.conditional_cdf.data() + (m * w + static_cast<std::size_t>(inside.x)) * (h + 1);
-    return cdf_density(slab.tables.marginal_cdf.data() + m * (w + 1), x, inside.x,
-                       view.x[0].texel_width * distance) *
-           cdf_density(conditional, y, inside.y, view.y[0].texel_width * distance);
+    const StoredCdfs cdfs = stored_cdfs(slab, image, inside.x);
+    return cdf_density(cdfs.marginal, x, inside.x, view.x[0].texel_width * distance) *
+           cdf_density(cdfs.conditional, y, inside.y, view.y[0].texel_width * distance);
 }
 
 float joint_density(const SamplingSlab& slab,
@@ -111,14 +144,10 @@ float joint_density(const SamplingSlab& slab,
                     const SeenPoint& point) {
     const Slab& lamp = slab.prepared.slab;
     const float distance = view.x_texels.delta + view.x_texels.height;
-    if (options.sampler == Sampler::Precomputed) {
-        const auto whole = [](int texels) {
-            return AxisBox{0, texels - 1, 0.0F, 0.0F, 1.0F, texels > 1 ? 1.0F : 0.0F, 1.0F};
-        };
+    if (options.sampler == Sampler::Precomputed)
         return view.energy[static_cast<std::size_t>(image)] / lamp_total *
-               stored_density(slab, view, image, whole(lamp.texels.x), whole(lamp.texels.y),
-                              point.texel);
-    }
+               stored_density(slab, view, image, whole_axis(lamp.texels.x),
+                              whole_axis(lamp.texels.y), point.texel);
     const DrawnBox box = drawn_box(lamp, view, options.sampler, image, point);
     if (!box.is_drawn)
         return 0.0F;
@@ -214,12 +243,19 @@ glm::vec2 inverse_u(const SamplingSlab& slab,
                     const SamplerOptions& options,
                     int image,
                     glm::vec2 u_m) {
+    const Slab& lamp = slab.prepared.slab;
     const SeenPoint point = see(view, u_m);
-    const DrawnBox box = drawn_box(slab.prepared.slab, view, options.sampler, image, point);
-    if (!box.is_drawn || !point.is_on_s)
+    if (!point.is_on_s)
         return glm::vec2(0.0F);
-    SamplingView scratch;
-    const Window window = open_window(slab, scratch, options.precision, image, box.x, box.y);
+    if (options.sampler == Sampler::Precomputed)
+        return invert_stored(slab, image, whole_axis(lamp.texels.x), whole_axis(lamp.texels.y),
+                             {point.texel, point.in_texel});
+    const DrawnBox box = drawn_box(lamp, view, options.sampler, image, point);
+    if (!box.is_drawn)
+        return glm::vec2(0.0F);
+    if (options.sampler == Sampler::Uniform)
+        return {shared::fraction_of(point.e.x - box.x.e_lo, box.x.e_hi - box.x.e_lo),
+                shared::fraction_of(point.e.y - box.y.e_lo, box.y.e_hi - box.y.e_lo)};
     const glm::ivec2 texel(std::clamp(point.texel.x, box.x.first, box.x.last),
                            std::clamp(point.texel.y, box.y.first, box.y.last));
     const auto fraction = [](const shared::AxisView& v, const shared::AxisTexels& s,
@@ -230,6 +266,10 @@ glm::vec2 inverse_u(const SamplingSlab& slab,
     const TexelPoint place{texel,
                            {fraction(view.x_view, view.x_texels, box.x, texel.x, point.e.x),
                             fraction(view.y_view, view.y_texels, box.y, texel.y, point.e.y)}};
+    if (options.sampler == Sampler::Pdis)
+        return invert_stored(slab, image, box.x, box.y, place);
+    SamplingView scratch;
+    const Window window = open_window(slab, scratch, options.precision, image, box.x, box.y);
     return invert_point(slab, scratch, window, place);
 }
 

@@ -131,10 +131,11 @@ glm::vec3 irradiance_by_sampler(std::span<const SamplingSlab> slabs,
     for (std::size_t k = 0; k < slabs.size(); ++k)
         look(slabs[k], receiver_in_slab[k], options, views[k]);
     draw(slabs, views, options, shift, samples);
-    glm::vec3 sum(0.0F);
+    // In double: a million equal floats added in float would lose a thousandth of their sum.
+    glm::dvec3 sum(0.0);
     for (const LightSample& sample : samples)
-        sum += sample.light;
-    return sum;
+        sum += glm::dvec3(sample.light);
+    return glm::vec3(sum);
 }
 
 }  // namespace nearfield::model

@@ -33,6 +33,11 @@ void draw_uniform(const Drawing& drawing);
 void draw_precomputed(const Drawing& drawing);
 void draw_pdis(const Drawing& drawing);
 
+/// One axis of an image that is drawn from as a whole, in units of its texels: Precomputed.
+inline shared::AxisBox whole_axis(int texels) {
+    return {0, texels - 1, 0.0F, 0.0F, 1.0F, texels > 1 ? 1.0F : 0.0F, 1.0F};
+}
+
 /// How many samples Pdis gives an image: eq. (12), rounded, at most k_max.
 int pdis_samples(const SamplerOptions& options, double lamp_total, float energy);
 

@@ -3,6 +3,7 @@
 // estimators_*.
 #include "formats/model/sampler.h"
 
+#include "formats/model/sampler_draws.h"
 #include "formats/model/sampler_window.h"
 #include "tests/support/lamps.h"
 #include "tests/support/oracle.h"
@@ -215,6 +216,46 @@ TEST(Sampler, InverseUndoesSampling) {
                 EXPECT_NEAR(back.y, xi.y, 2e-3) << name_of(sampler) << " at " << height;
             }
         }
+    }
+}
+
+// The baselines' points come from a plane sequence that is known: each drawn point inverts to one
+// of its image's. Points without light are left out of the samples, so which one is not known.
+TEST(Sampler, InverseFindsTheBaselinesCoordinates) {
+    const Slab lamp = random_lamp(support::all_profiles()[3], Weighting::Irradiance, 9);
+    constexpr glm::vec2 kShift(0.37F, 0.81F);
+    for (const Sampler sampler : {Sampler::Uniform, Sampler::Pdis, Sampler::Precomputed}) {
+        // Few points of a whole image are in sight.
+        const SamplerOptions options =
+            options_of(sampler, sampler == Sampler::Precomputed ? 2000 : 200);
+        Looked looked(lamp, {}, options);
+        std::size_t inverted = 0;
+        const SamplingView& view = looked.views[0];
+        const auto points_of = [&](int image) {
+            const float energy = view.energy[static_cast<std::size_t>(image)];
+            return sampler == Sampler::Uniform ? static_cast<int>(view.drawn / view.total)
+                   : sampler == Sampler::Pdis  ? pdis_samples(options, view.total, energy)
+                                               : options.samples;
+        };
+        for (const double height : {-0.4, 0.3, 30.0}) {
+            looked.look_from(in_float(hard_receivers(lamp, height, 15)[0].receiver));
+            draw(looked.slabs, looked.views, options, kShift, looked.samples);
+            inverted += looked.samples.size();
+            for (const LightSample& sample : looked.samples) {
+                const glm::vec2 back =
+                    inverse_u(looked.slabs[0], view, options, sample.image, sample.u_m);
+                const int count = points_of(sample.image);
+                float nearest = 1.0F;
+                for (int q = 0; q < count; ++q) {
+                    const glm::vec2 off =
+                        glm::abs(back - plane_point(options.sequence, static_cast<std::uint32_t>(q),
+                                                    static_cast<std::uint32_t>(count), kShift));
+                    nearest = std::min(nearest, std::max(off.x, off.y));
+                }
+                EXPECT_LT(nearest, 2e-3F) << name_of(sampler) << " at " << height;
+            }
+        }
+        EXPECT_GT(inverted, 20U) << name_of(sampler);
     }
 }
 
