@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace nearfield::render {
@@ -58,9 +59,10 @@ TEST(Display, FilmicKeepsHueAndStaysWithinTheDisplay) {
 // Proves that automatic exposure looks at lit pixels alone, and that a dark picture is no special
 // case.
 TEST(Display, AutomaticExposurePutsTheBrightestTwentiethAboveWhite) {
-    std::vector<float> rgb(3 * 1000, 0.0F);
-    for (std::size_t i = 0; i < 300; ++i)
-        rgb[i] = static_cast<float>(i / 3 + 1);  // 100 lit pixels of 1 ... 100
+    std::vector<float> rgb(std::size_t{3} * 1000, 0.0F);
+    for (std::size_t pixel = 0; pixel < 100; ++pixel)  // 100 lit pixels of 1 ... 100
+        std::fill_n(rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3,
+                    static_cast<float>(pixel + 1));
     const double ev = automatic_exposure_ev(flat(rgb).layers[0], ToneMap::Filmic);
     EXPECT_NEAR(1.2 * std::exp2(ev), 95.0, 1e-3);
     EXPECT_EQ(automatic_exposure_ev(flat({0, 0, 0}).layers[0], ToneMap::Filmic), 0.0);

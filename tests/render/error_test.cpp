@@ -169,7 +169,7 @@ TEST(RenderError, TooLittleTimeCoarsensTheSumAndBoundsItsBias) {
     Scene scene = penumbra_scene();
     LightField lamp = one_window_lamp(0.2, 1.0F);
     lamp.slabs[0].texels = {64, 64};
-    lamp.slabs[0].coeffs.resize(64 * 64);
+    lamp.slabs[0].coeffs.resize(std::size_t{64} * 64);
     for (std::size_t i = 0; i < 64 * 64; ++i)
         lamp.slabs[0].coeffs[i] = static_cast<float>((i * 37) % 11);
     scene.luminaires = {write_lamp(lamp, "fine", pose({0, 0, 2}, kDown))};

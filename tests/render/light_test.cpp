@@ -181,7 +181,7 @@ Total total(const Rendered& rendered) {
 TEST(Light, GlossBySumAndBySamplesAgree) {
     LightField lamp = one_window_lamp(0.1, 1.0F);
     lamp.slabs[0].texels = {48, 40};
-    lamp.slabs[0].coeffs.resize(48 * 40);
+    lamp.slabs[0].coeffs.resize(std::size_t{48} * 40);
     for (std::size_t i = 0; i < lamp.slabs[0].coeffs.size(); ++i)
         lamp.slabs[0].coeffs[i] = static_cast<float>((i * 37) % 11);
     Scene scene = floor_scene();

@@ -114,7 +114,7 @@ Scene uneven_scene() {
     slab.texels = {5, 4};
     slab.channels = 3;
     slab.profile = model::make_profile("bspline");
-    slab.coeffs.resize(3 * 6 * 20);
+    slab.coeffs.resize(std::size_t{3} * 6 * 20);
     for (std::size_t i = 0; i < slab.coeffs.size(); ++i)
         slab.coeffs[i] = static_cast<float>((i * 7919) % 101);
     Scene scene = floor_scene();

@@ -100,9 +100,9 @@ TEST(Shadow, ExcludedMeshCastsNoShadowForItsLampAlone) {
         scene.luminaires[1].excludes = {name};
         const Rendered rendered = render(scene, small());
         EXPECT_EQ(layer(rendered.picture, "lamp.a").values[0], 0.0F);
-        EXPECT_NEAR(layer(rendered.picture, "lamp.a_2").values[3 * 136],
-                    layer(open.picture, "lamp.a").values[3 * 136],
-                    1e-6F * layer(open.picture, "lamp.a").values[3 * 136]);
+        EXPECT_NEAR(layer(rendered.picture, "lamp.a_2").values[std::size_t{3} * 136],
+                    layer(open.picture, "lamp.a").values[std::size_t{3} * 136],
+                    1e-6F * layer(open.picture, "lamp.a").values[std::size_t{3} * 136]);
     }
 }
 
