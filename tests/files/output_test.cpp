@@ -83,7 +83,7 @@ TEST(AtomicFile, RefusesMissingFoldersAndDevices) {
 Picture sample_picture() {
     Picture picture;
     picture.size_px = {7, 37};  // more than one block of 16 scanlines
-    const std::size_t pixels = 7 * 37;
+    const std::size_t pixels = std::size_t{7} * 37;
     std::vector<float> colors(3 * pixels), depth(pixels);
     for (std::size_t k = 0; k < colors.size(); ++k)
         colors[k] = 0.25F * static_cast<float>(k);
@@ -121,7 +121,7 @@ TEST(Picture, RefusesLayersOfAnotherSizeAndFilesOfSeveralParts) {
 }
 
 TEST(Png, HasTheSignatureAndSizeOfAPng) {
-    write_png(std::vector<unsigned char>(3 * 4 * 2, 128), {4, 2}, "gray.png");
+    write_png(std::vector<unsigned char>(std::size_t{3} * 4 * 2, 128), {4, 2}, "gray.png");
     const std::string bytes = read_bytes("gray.png");
     EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1A\n");
     EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\4\0\0\0\2", 8));

@@ -18,6 +18,7 @@ std::vector<float> ramp(std::size_t count, float first) {
 
 std::vector<glm::vec2> ramp_pairs(int count, float first) {
     std::vector<glm::vec2> values;
+    values.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k)
         values.emplace_back(first + static_cast<float>(k), -first - 0.5F * static_cast<float>(k));
     return values;
