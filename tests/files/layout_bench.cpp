@@ -30,9 +30,8 @@
 #include <limits>
 #include <memory>
 
+namespace nearfield {
 namespace {
-
-using namespace nearfield;
 
 constexpr int kRepeats = 9;
 constexpr const char* kFile = "layout_bench.exr";
@@ -54,8 +53,9 @@ LightField bench_lamp() {
     std::uint32_t random = 1;
     for (std::size_t k = 0; k < slab.coeffs.size(); ++k) {
         const std::size_t image = k / slab.texel_count() % 99, texel = k % slab.texel_count();
-        const double x = static_cast<double>(texel % 256) / 128 - 1;
-        const double y = static_cast<double>(texel / 256) / 128 - 1;
+        const std::size_t column = texel % 256, row = texel / 256;
+        const double x = static_cast<double>(column) / 128 - 1;
+        const double y = static_cast<double>(row) / 128 - 1;
         random = random * 1664525U + 1013904223U;
         const double grain = 1 + 0.01 * random / 4294967296.0;
         const bool is_lit = y < 0.05 * static_cast<double>(image % 11) - 0.2;
@@ -204,14 +204,12 @@ void bench_ready(const LightField& lamp, std::size_t threads) {
     std::remove(kFile);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+void run(bool only_ready) {
     const LightField lamp = bench_lamp();
     for (const std::size_t threads : {std::size_t{1}, std::size_t{2}})
         bench_ready(lamp, threads);
-    if (argc > 1 && std::string(argv[1]) == "ready")
-        return 0;
+    if (only_ready)
+        return;
     fmt::print(
         "\n| layout | MiB | write, ms (CPU) | read, ms (CPU) |\n| --- | --- | --- | --- |\n");
     bench_layouts(lamp.slabs[0]);
@@ -222,5 +220,12 @@ int main(int argc, char** argv) {
     print_row("the file's bytes alone into memory, unchecked", write,
               best_of([&] { read_bytes(kFile, 0, size, 2); }));
     std::remove(kFile);
+}
+
+}  // namespace
+}  // namespace nearfield
+
+int main(int argc, char** argv) {
+    nearfield::run(argc > 1 && std::string(argv[1]) == "ready");
     return 0;
 }

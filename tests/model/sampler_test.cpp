@@ -219,6 +219,19 @@ TEST(Sampler, InverseUndoesSampling) {
     }
 }
 
+/// How far a point is from the nearest of a sequence's first `count`, along the axis where it is
+/// farther.
+float distance_to_nearest(glm::vec2 point, Sequence sequence, int count, glm::vec2 shift) {
+    float nearest = 1.0F;
+    for (int q = 0; q < count; ++q) {
+        const glm::vec2 off =
+            glm::abs(point - plane_point(sequence, static_cast<std::uint32_t>(q),
+                                         static_cast<std::uint32_t>(count), shift));
+        nearest = std::min(nearest, std::max(off.x, off.y));
+    }
+    return nearest;
+}
+
 // The baselines' points come from a plane sequence that is known: each drawn point inverts to one
 // of its image's. Points without light are left out of the samples, so which one is not known.
 TEST(Sampler, InverseFindsTheBaselinesCoordinates) {
@@ -244,14 +257,8 @@ TEST(Sampler, InverseFindsTheBaselinesCoordinates) {
             for (const LightSample& sample : looked.samples) {
                 const glm::vec2 back =
                     inverse_u(looked.slabs[0], view, options, sample.image, sample.u_m);
-                const int count = points_of(sample.image);
-                float nearest = 1.0F;
-                for (int q = 0; q < count; ++q) {
-                    const glm::vec2 off =
-                        glm::abs(back - plane_point(options.sequence, static_cast<std::uint32_t>(q),
-                                                    static_cast<std::uint32_t>(count), kShift));
-                    nearest = std::min(nearest, std::max(off.x, off.y));
-                }
+                const float nearest =
+                    distance_to_nearest(back, options.sequence, points_of(sample.image), kShift);
                 EXPECT_LT(nearest, 2e-3F) << name_of(sampler) << " at " << height;
             }
         }
