@@ -3,7 +3,8 @@
 
 #include "formats/files/error.h"
 
-#include <cmath>
+#define SHARED_NAMESPACE shared::f64
+#include "formats/shared/basis.glsl.h"
 
 namespace nearfield::model {
 namespace {
@@ -40,18 +41,19 @@ Profile make_profile(const std::string& name) {
 
 double eval(const Profile& profile, double x) {
     const auto n = static_cast<double>(profile.cells.size());
-    const double cell = std::floor(x + 0.5 * n);
+    const double cell = shared::f64::profile_cell(x, n);
     if (!(cell >= 0.0 && cell < n))
         return 0.0;
     const auto& [a0, a1, a2] = profile.cells[static_cast<std::size_t>(cell)];
-    return a0 + x * (a1 + x * a2);
+    return shared::f64::profile_value(x, a0, a1, a2);
 }
 
 double integral(const Profile& profile, std::size_t c) {
     const auto n = static_cast<double>(profile.cells.size());
     const double middle = static_cast<double>(c) + 0.5 * (1.0 - n);
     const auto& [a0, a1, a2] = profile.cells[c];
-    return a0 + middle * (a1 + middle * a2) + a2 / 12.0;  // midpoint rule and its exact correction
+    return shared::f64::profile_value(middle, a0, a1, a2) +
+           a2 / 12.0;  // midpoint rule and its exact correction
 }
 
 double integral(const Profile& profile) {

@@ -5,7 +5,6 @@
 #include "formats/model/sampler_window.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -13,73 +12,6 @@ namespace nearfield::model {
 namespace {
 
 using shared::AxisBox;
-
-constexpr float kBelowOne = 0x1.fffffep-1F;
-
-// A stored CDF along one axis, restricted to a box by an affine transformation (eq. (8)): positions
-// in texels and the CDF at its ends.
-struct RestrictedCdf {
-    const float* cdf;
-    int first, last;
-    float x_lo, x_hi;  // ends of the box, in texels
-    float c_lo, c_hi;  // the CDF there
-};
-
-RestrictedCdf restrict_cdf(const float* cdf, const AxisBox& box) {
-    const float part_first = std::min(box.first_width / box.texel_width, 1.0F);
-    const float part_last = std::min(box.last_width / box.texel_width, 1.0F);
-    const float step_first = cdf[box.first + 1] - cdf[box.first];
-    RestrictedCdf r{cdf, box.first, box.last, 0.0F, 0.0F, 0.0F, 0.0F};
-    r.x_lo = static_cast<float>(box.first + 1) - part_first;
-    r.c_lo = cdf[box.first + 1] - part_first * step_first;
-    // Of a single texel any stretch as long as the box' is as good: the CDF is linear in it.
-    r.x_hi = static_cast<float>(box.first == box.last ? box.first + 1 : box.last) + part_last;
-    r.c_hi = box.first == box.last
-                 ? cdf[box.first + 1]
-                 : cdf[box.last] + part_last * (cdf[box.last + 1] - cdf[box.last]);
-    return r;
-}
-
-// The texel where the CDF passes c_lo + xi (c_hi - c_lo), and where in its part of the box.
-// Bisection or the paper's secant on whole texels; cut short after max_steps (0: never) the CDF is
-// taken as linear over what is left. Nothing where the CDF does not rise: 0/0 as printed.
-std::optional<shared::TexelPick> invert(const RestrictedCdf& r,
-                                        float xi,
-                                        Search search,
-                                        int max_steps) {
-    if (!(r.c_hi > r.c_lo))
-        return std::nullopt;
-    const float target = r.c_lo + xi * (r.c_hi - r.c_lo);
-    int lo = r.first, hi = r.last + 1, steps = 0;
-    float c_lo = r.c_lo, c_hi = r.c_hi;
-    while (hi - lo > 1 && (max_steps == 0 || steps < max_steps)) {
-        int middle = (lo + hi) / 2;
-        if (search == Search::Secant) {
-            const float along = (target - c_lo) / (c_hi - c_lo);
-            middle = lo + static_cast<int>(along * static_cast<float>(hi - lo));
-            middle = std::clamp(middle, lo + 1, hi - 1);
-        }
-        ++steps;
-        const float value = r.cdf[middle];
-        if (target < value) {
-            hi = middle;
-            c_hi = value;
-        } else {
-            lo = middle;
-            c_lo = value;
-        }
-    }
-    const float x_lo = std::max(static_cast<float>(lo), r.x_lo);
-    const float x_hi = std::min(static_cast<float>(hi), r.x_hi);
-    const float x = x_lo + shared::fraction_of(target - c_lo, c_hi - c_lo) * (x_hi - x_lo);
-    shared::TexelPick pick{};
-    pick.texel = std::clamp(static_cast<int>(std::floor(x)), lo, hi - 1);
-    const float begin = std::max(static_cast<float>(pick.texel), r.x_lo);
-    const float end = std::min(static_cast<float>(pick.texel + 1), r.x_hi);
-    pick.fraction = shared::fraction_of(x - begin, end - begin);
-    pick.steps = steps;
-    return pick;
-}
 
 // A point of an image by its stored CDFs within a box: the marginal over whole columns, as printed.
 std::optional<TexelPoint> invert_image(const SamplingSlab& slab,
@@ -89,24 +21,22 @@ std::optional<TexelPoint> invert_image(const SamplingSlab& slab,
                                        const AxisBox& x,
                                        const AxisBox& y,
                                        glm::vec2 xi) {
-    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
-    const auto h = static_cast<std::size_t>(slab.prepared.slab.texels.y);
-    const auto m = static_cast<std::size_t>(image);
-    const auto column = invert(restrict_cdf(slab.tables.marginal_cdf.data() + m * (w + 1), x), xi.x,
-                               options.search, options.search_steps);
+    const bool is_secant = options.search == Search::Secant;
+    const shared::StoredCdf columns = marginal_cdf(slab, image);
+    const shared::TexelPick column =
+        invert_cdf(columns, restrict_cdf(columns, x), xi.x, is_secant, options.search_steps);
     constexpr std::uint64_t kEnds = 4;  // both ends' texels
     view.reads += kEnds;
-    if (!column)
+    if (column.texel < 0)
         return std::nullopt;
-    const float* conditional = slab.tables.conditional_cdf.data() +
-                               (m * w + static_cast<std::size_t>(column->texel)) * (h + 1);
-    const auto row =
-        invert(restrict_cdf(conditional, y), xi.y, options.search, options.search_steps);
-    view.reads += static_cast<std::uint64_t>(column->steps) + kEnds;
-    if (!row)
+    const shared::StoredCdf rows = conditional_cdf(slab, image, column.texel);
+    const shared::TexelPick row =
+        invert_cdf(rows, restrict_cdf(rows, y), xi.y, is_secant, options.search_steps);
+    view.reads += static_cast<std::uint64_t>(column.steps) + kEnds;
+    if (row.texel < 0)
         return std::nullopt;
-    view.reads += static_cast<std::uint64_t>(row->steps);
-    return TexelPoint{{column->texel, row->texel}, {column->fraction, row->fraction}};
+    view.reads += static_cast<std::uint64_t>(row.steps);
+    return TexelPoint{{column.texel, row.texel}, {column.fraction, row.fraction}};
 }
 
 // The light of a point drawn in proportion to C_m, `share` of energy each.
@@ -153,8 +83,7 @@ void draw_uniform_image(const Drawing& drawing, std::size_t k, int image, int co
         const glm::vec2 e =
             e_lo + e_size * plane_point(drawing.options.sequence, static_cast<std::uint32_t>(q),
                                         static_cast<std::uint32_t>(count), drawing.shift);
-        const AperturePoint at{{u_of_e(view.x_view, e.x), u_of_e(view.y_view, e.y)},
-                               {t_of_e(view.x_view, e.x), t_of_e(view.y_view, e.y)}};
+        const AperturePoint at = aperture_at(view.x_view, view.y_view, e);
         const auto texel = [&](const shared::AxisTexels& s, float u, float p, const AxisBox& box) {
             return std::clamp(texel_of_s(s, shared::s_of_u(u, p, s.delta, s.height), 0.0F),
                               box.first, box.last);
@@ -185,12 +114,6 @@ void draw_uniform(const Drawing& drawing) {
                 draw_uniform_image(drawing, k, static_cast<int>(m), count);
 }
 
-int pdis_samples(const SamplerOptions& options, double lamp_total, float energy) {
-    const double exact = options.samples * static_cast<double>(energy) / lamp_total;
-    const auto rounded = static_cast<int>(std::floor(exact + 0.5));
-    return options.k_max > 0 ? std::min(rounded, options.k_max) : rounded;
-}
-
 void draw_pdis(const Drawing& drawing) {
     const SamplerOptions& options = drawing.options;
     const double total = lamp_energy(drawing.views).total;
@@ -219,9 +142,10 @@ void draw_pdis(const Drawing& drawing) {
 
 void draw_precomputed(const Drawing& drawing) {
     const SamplerOptions& options = drawing.options;
-    const double total = lamp_energy(drawing.views).total, count = options.samples;
-    const double start = third_shift(drawing.shift);
-    int q = 0;
+    const double total = lamp_energy(drawing.views).total;
+    const auto count = static_cast<std::uint32_t>(options.samples);
+    const float start = shared::third_shift(drawing.shift);
+    std::uint32_t q = 0;
     double sum = 0.0;
     for (std::size_t k = 0; k < drawing.slabs.size(); ++k) {
         const Slab& slab = drawing.slabs[k].prepared.slab;
@@ -231,21 +155,19 @@ void draw_precomputed(const Drawing& drawing) {
             std::abs(view.y_view.s_keep + view.y_view.s_slope) * view.y_view.t_scale);
         for (std::size_t m = 0; m < view.energy.size(); ++m) {
             sum += static_cast<double>(view.energy[m]);
-            for (; q < options.samples && (q + start) / count * total < sum; ++q) {
+            for (; q < count && shared::stratum_target(q, start, count, total) < sum; ++q) {
                 const auto image = static_cast<int>(m);
                 const auto point = invert_image(
-                    drawing.slabs[k], view, options, image, whole_axis(slab.texels.x),
-                    whole_axis(slab.texels.y),
-                    plane_point(options.sequence, static_cast<std::uint32_t>(q),
-                                static_cast<std::uint32_t>(options.samples), drawing.shift));
+                    drawing.slabs[k], view, options, image, shared::whole_axis(slab.texels.x),
+                    shared::whole_axis(slab.texels.y),
+                    plane_point(options.sequence, q, count, drawing.shift));
                 if (!point)
                     continue;
                 const glm::vec2 s =
                     glm::vec2(slab.s_min_m) +
                     (glm::vec2(point->texel) + point->fraction) * glm::vec2(slab.texel_m());
-                const glm::vec2 e(e_of_s(view.x_view, s.x), e_of_s(view.y_view, s.y));
-                const AperturePoint at{{u_of_e(view.x_view, e.x), u_of_e(view.y_view, e.y)},
-                                       {t_of_e(view.x_view, e.x), t_of_e(view.y_view, e.y)}};
+                const AperturePoint at = aperture_at(
+                    view.x_view, view.y_view, {e_of_s(view.x_view, s.x), e_of_s(view.y_view, s.y)});
                 add(drawing, k, image, point->texel, at, total / count * t_per_s.x * t_per_s.y);
             }
         }

@@ -74,51 +74,18 @@ float texel_luminance(const Slab& slab, int image, glm::ivec2 texel) {
     return luminance_of(slab, texel_color(slab, image, texel));
 }
 
-// How far a stored CDF rises within a box, from its beginning to a fraction of texel i's part of
-// it.
-float rise_until(const float* cdf, const AxisBox& box, int i, float fraction) {
-    const auto step = [&](int k) { return cdf[k + 1] - cdf[k]; };
-    const float of_first = std::min(box.first_width / box.texel_width, 1.0F) * step(box.first);
-    if (i == box.first)
-        return fraction * of_first;
-    const float part = i == box.last ? std::min(box.last_width / box.texel_width, 1.0F) : 1.0F;
-    return of_first + (cdf[i] - cdf[box.first + 1]) + fraction * part * step(i);
-}
-
-// Density per u along one axis of the restricted stored CDF: its step at a texel over the texel's
-// width on U and the CDF's rise over the box.
-float cdf_density(const float* cdf, const AxisBox& box, int texel, float texel_width_u_m) {
-    const float rise = rise_until(cdf, box, box.last, 1.0F);
-    return rise > 0.0F ? (cdf[texel + 1] - cdf[texel]) / (rise * texel_width_u_m) : 0.0F;
-}
-
-// An image's own CDFs: over columns, and over the rows of one of them.
-struct StoredCdfs {
-    const float *marginal, *conditional;
-};
-
-StoredCdfs stored_cdfs(const SamplingSlab& slab, int image, int column) {
-    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
-    const auto h = static_cast<std::size_t>(slab.prepared.slab.texels.y);
-    const auto m = static_cast<std::size_t>(image);
-    return {
-        slab.tables.marginal_cdf.data() + m * (w + 1),
-        slab.tables.conditional_cdf.data() + (m * w + static_cast<std::size_t>(column)) * (h + 1)};
-}
-
 // The coordinates at which an image's own CDFs give a place in a box.
 glm::vec2 invert_stored(const SamplingSlab& slab,
                         int image,
                         const AxisBox& x,
                         const AxisBox& y,
                         const TexelPoint& place) {
-    const StoredCdfs cdfs = stored_cdfs(slab, image, place.texel.x);
-    const auto along = [](const float* cdf, const AxisBox& box, int i, float fraction) {
+    const auto along = [](shared::StoredCdf cdf, const AxisBox& box, int i, float fraction) {
         return shared::fraction_of(rise_until(cdf, box, i, fraction),
                                    rise_until(cdf, box, box.last, 1.0F));
     };
-    return {along(cdfs.marginal, x, place.texel.x, place.fraction.x),
-            along(cdfs.conditional, y, place.texel.y, place.fraction.y)};
+    return {along(marginal_cdf(slab, image), x, place.texel.x, place.fraction.x),
+            along(conditional_cdf(slab, image, place.texel.x), y, place.texel.y, place.fraction.y)};
 }
 
 // Density per m^2 on U of an image's own CDFs within boxes.
@@ -131,9 +98,9 @@ float stored_density(const SamplingSlab& slab,
     const float distance = view.x_texels.delta + view.x_texels.height;
     const glm::ivec2 inside(std::clamp(texel.x, x.first, x.last),
                             std::clamp(texel.y, y.first, y.last));
-    const StoredCdfs cdfs = stored_cdfs(slab, image, inside.x);
-    return cdf_density(cdfs.marginal, x, inside.x, view.x[0].texel_width * distance) *
-           cdf_density(cdfs.conditional, y, inside.y, view.y[0].texel_width * distance);
+    return cdf_density(marginal_cdf(slab, image), x, inside.x, view.x[0].texel_width * distance) *
+           cdf_density(conditional_cdf(slab, image, inside.x), y, inside.y,
+                       view.y[0].texel_width * distance);
 }
 
 float joint_density(const SamplingSlab& slab,
@@ -146,8 +113,8 @@ float joint_density(const SamplingSlab& slab,
     const float distance = view.x_texels.delta + view.x_texels.height;
     if (options.sampler == Sampler::Precomputed)
         return view.energy[static_cast<std::size_t>(image)] / lamp_total *
-               stored_density(slab, view, image, whole_axis(lamp.texels.x),
-                              whole_axis(lamp.texels.y), point.texel);
+               stored_density(slab, view, image, shared::whole_axis(lamp.texels.x),
+                              shared::whole_axis(lamp.texels.y), point.texel);
     const DrawnBox box = drawn_box(lamp, view, options.sampler, image, point);
     if (!box.is_drawn)
         return 0.0F;
@@ -161,7 +128,7 @@ float joint_density(const SamplingSlab& slab,
                    (lamp_total * (box.x.e_hi - box.x.e_lo) * view.x_view.u_scale *
                     (box.y.e_hi - box.y.e_lo) * view.y_view.u_scale);
         case Sampler::Pdis:
-            return static_cast<float>(pdis_samples(options, lamp_total,
+            return static_cast<float>(pdis_samples(options, static_cast<double>(lamp_total),
                                                    view.energy[static_cast<std::size_t>(image)])) /
                    view.drawn * stored_density(slab, view, image, box.x, box.y, point.texel);
         case Sampler::Cells:
@@ -187,6 +154,18 @@ glm::ivec2 covering(const Slab& slab, int axis, float u_m) {
 }
 
 }  // namespace
+
+shared::StoredCdf marginal_cdf(const SamplingSlab& slab, int image) {
+    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
+    return {slab.tables.marginal_cdf.data() + static_cast<std::size_t>(image) * (w + 1)};
+}
+
+shared::StoredCdf conditional_cdf(const SamplingSlab& slab, int image, int column) {
+    const auto w = static_cast<std::size_t>(slab.prepared.slab.texels.x);
+    const auto h = static_cast<std::size_t>(slab.prepared.slab.texels.y);
+    const std::size_t at = static_cast<std::size_t>(image) * w + static_cast<std::size_t>(column);
+    return {slab.tables.conditional_cdf.data() + at * (h + 1)};
+}
 
 float joint_density_u(const SamplingSlab& slab,
                       const SamplingView& view,
@@ -234,8 +213,8 @@ float marginal_density_omega(const SamplingSlab& slab,
     if (!(distance > 0.0F))
         return 0.0F;
     const glm::vec2 t = (u_m - glm::vec2(view.receiver.position_m)) / distance;
-    const float r2 = distance * distance * (1.0F + glm::dot(t, t));
-    return marginal_density_u(slab, view, options, lamp_total, u_m) * r2 * std::sqrt(r2) / distance;
+    return marginal_density_u(slab, view, options, lamp_total, u_m) *
+           shared::omega_per_u(t, distance);
 }
 
 glm::vec2 inverse_u(const SamplingSlab& slab,
@@ -248,8 +227,8 @@ glm::vec2 inverse_u(const SamplingSlab& slab,
     if (!point.is_on_s)
         return glm::vec2(0.0F);
     if (options.sampler == Sampler::Precomputed)
-        return invert_stored(slab, image, whole_axis(lamp.texels.x), whole_axis(lamp.texels.y),
-                             {point.texel, point.in_texel});
+        return invert_stored(slab, image, shared::whole_axis(lamp.texels.x),
+                             shared::whole_axis(lamp.texels.y), {point.texel, point.in_texel});
     const DrawnBox box = drawn_box(lamp, view, options.sampler, image, point);
     if (!box.is_drawn)
         return glm::vec2(0.0F);

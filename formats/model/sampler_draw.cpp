@@ -67,11 +67,12 @@ void draw_systematic(const Drawing& drawing) {
     // with q as images do, so they go on with the rest too.
     const bool by_rest =
         options.sampler == Sampler::Cells || options.sequence == Sequence::Fibonacci;
-    const double start = by_rest ? drawing.shift.x : third_shift(drawing.shift);
-    const double total = lamp_energy(drawing.views).total, count = options.samples;
+    const float start = by_rest ? drawing.shift.x : shared::third_shift(drawing.shift);
+    const double total = lamp_energy(drawing.views).total;
+    const auto count = static_cast<std::uint32_t>(options.samples);
     const auto share = static_cast<float>(total / count);
-    int q = 0;
-    const auto target = [&] { return (q + start) / count * total; };
+    std::uint32_t q = 0;
+    const auto target = [&] { return shared::stratum_target(q, start, count, total); };
     double sum = 0.0;
     for (std::size_t k = 0; k < drawing.slabs.size(); ++k) {
         const SamplingSlab& slab = drawing.slabs[k];
@@ -79,7 +80,7 @@ void draw_systematic(const Drawing& drawing) {
         for (std::size_t entry = 0; entry < view.energy.size(); ++entry) {
             const double energy = view.energy[entry], before = sum;
             sum += energy;
-            if (q == options.samples || !(target() < sum))
+            if (q == count || !(target() < sum))
                 continue;
             const Part part = part_of(slab.prepared.slab, options.sampler, entry);
             const glm::ivec2 grid = slab.prepared.slab.grid;
@@ -87,15 +88,12 @@ void draw_systematic(const Drawing& drawing) {
                 open_window(slab, view, options.precision, part.image,
                             view.x[static_cast<std::size_t>(part.image % grid.x + part.cell_x)],
                             view.y[static_cast<std::size_t>(part.image / grid.x + part.cell_y)]);
-            for (; q < options.samples && target() < sum; ++q) {
-                const auto number = static_cast<std::uint32_t>(q);
+            for (; q < count && target() < sum; ++q) {
                 const auto rest = static_cast<float>((target() - before) / energy);
                 const glm::vec2 point =
-                    by_rest
-                        ? glm::vec2(std::min(rest, 0x1.fffffep-1F),
-                                    second_coordinate(options.sequence, number, drawing.shift))
-                        : plane_point(options.sequence, number,
-                                      static_cast<std::uint32_t>(options.samples), drawing.shift);
+                    by_rest ? glm::vec2(std::min(rest, shared::kBelowOne),
+                                        second_coordinate(options.sequence, q, drawing.shift))
+                            : plane_point(options.sequence, q, count, drawing.shift);
                 add_sample(drawing, k, window, point, share / part.mean_basis);
             }
         }

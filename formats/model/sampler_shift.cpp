@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shifts of points from pixel to pixel, and the tile of blue noise.
-#include "formats/model/sampler.h"
+#include "formats/model/sampler_draws.h"
 #include "formats/shared/rng.glsl.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace nearfield::model {
 namespace {
 
-constexpr int kTile = 64;
+constexpr int kTile = kBlueNoiseTile;
 constexpr int kTexels = kTile * kTile;
 
 using Tile = std::array<float, kTexels>;
@@ -98,39 +98,24 @@ Tile make_tile(std::uint32_t seed) {
     return tile;
 }
 
-glm::vec2 blue_noise(glm::uvec2 pixel) {
-    static const std::array<Tile, 2> tiles = {make_tile(1), make_tile(2)};
-    const std::size_t at = pixel.y % kTile * kTile + pixel.x % kTile;
-    return {tiles[0][at], tiles[1][at]};
-}
-
-// Sum modulo 1, below 1 in float too.
-glm::vec2 wrap(glm::vec2 sum) {
-    return glm::min(glm::fract(sum), glm::vec2(0x1.fffffep-1F));
-}
-
 }  // namespace
 
+const std::vector<glm::vec2>& blue_noise_tile() {
+    static const std::vector<glm::vec2> interleaved = [] {
+        const Tile x = make_tile(1), y = make_tile(2);
+        std::vector<glm::vec2> tile;
+        for (std::size_t k = 0; k < x.size(); ++k)
+            tile.emplace_back(x[k], y[k]);
+        return tile;
+    }();
+    return interleaved;
+}
+
 glm::vec2 shift_of(Shift shift, glm::uvec2 pixel, std::uint32_t pass, std::uint32_t seed) {
-    const auto random = [&](glm::uvec4 key) {
-        const glm::uvec4 bits = shared::hash4(key);
-        return glm::vec2(shared::unit_float(bits.x), shared::unit_float(bits.y));
-    };
-    switch (shift) {
-        case Shift::Constant:
-            return glm::vec2(0.0F);
-        case Shift::Random:
-            return random({pixel, pass, seed});
-        case Shift::BlueNoise: {
-            const glm::uvec4 start = shared::hash4({seed, 0U, 0U, 1U});
-            return wrap(blue_noise(pixel) + shared::r2_point(pass, {start.x, start.y}));
-        }
-        case Shift::Interleaved: {
-            const glm::uvec4 start = shared::hash4({pass, seed, 0U, 2U});
-            return shared::r2_point(pixel.y % 4U * 4U + pixel.x % 4U, {start.x, start.y});
-        }
-    }
-    return glm::vec2(0.0F);
+    glm::vec2 noise(0.0F);
+    if (shift == Shift::BlueNoise)
+        noise = blue_noise_tile()[pixel.y % kTile * kTile + pixel.x % kTile];
+    return shared::pixel_shift(word_of(shift), pixel, pass, seed, noise);
 }
 
 }  // namespace nearfield::model

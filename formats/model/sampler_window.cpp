@@ -11,13 +11,6 @@ namespace {
 
 using shared::AxisBox;
 
-// Pairs of floats leave an error of about 5e-15 of an image's light: below 1e-4 of this share.
-constexpr float kResolvedShare = 1e-9F;
-
-float widest(const AxisBox& box) {
-    return box.last - box.first > 1 ? box.texel_width : std::max(box.first_width, box.last_width);
-}
-
 bool is_resolved(const SamplingSlab& slab,
                  TablePrecision precision,
                  int image,
@@ -27,7 +20,7 @@ bool is_resolved(const SamplingSlab& slab,
     if (precision == TablePrecision::Float)
         return true;
     const float total = slab.tables.total[static_cast<std::size_t>(image)];
-    return energy >= kResolvedShare * total * widest(x) * widest(y);
+    return shared::is_resolved(energy, total, x, y);
 }
 
 float texel_luminance(const Slab& slab, int image, int i, int j) {
@@ -146,7 +139,7 @@ float window_energy(const SamplingSlab& slab,
     if (!is_lit(slab, image, x, y))
         return 0.0F;
     const shared::AreaTable table = area_table(slab, precision, image);
-    const float found = parts_sum(column_parts(table, x, y));
+    const float found = box_energy(table, x, y);
     view.reads += corner_reads(table, 16);
     return resolved_energy(slab, view, precision, image, x, y, found);
 }
@@ -157,11 +150,12 @@ Window open_window(const SamplingSlab& slab,
                    int image,
                    const AxisBox& x,
                    const AxisBox& y) {
-    Window window{image, x, y, area_table(slab, precision, image), {}, false, 0.0F};
+    Window window{image, x, y, area_table(slab, precision, image), {}, {}, false, 0.0F};
     if (!is_lit(slab, image, x, y))
         return window;
-    window.parts = column_parts(window.table, x, y);
-    window.energy = parts_sum(window.parts);
+    window.corners = box_corners(window.table, x, y);
+    window.blocks = box_blocks(window.corners, x, y);
+    window.energy = shared::sum_of(column_energies(window.blocks));
     view.reads += corner_reads(window.table, 16);
     window.is_by_texels = !is_resolved(slab, precision, image, x, y, window.energy);
     if (window.is_by_texels)
@@ -177,17 +171,12 @@ std::optional<TexelPoint> pick_point(const SamplingSlab& slab,
         return std::nullopt;
     if (window.is_by_texels)
         return pick_by_texels(slab, view, window, coordinates);
-    const shared::TexelPick column =
-        pick_column(window.table, window.x, window.y, window.parts, coordinates.x * window.energy);
-    const shared::BoxParts rows = row_parts(window.table, column.texel, window.y);
-    const float energy = parts_sum(rows);
-    view.reads += corner_reads(window.table, 4 + 4 * column.steps + 8);
-    if (!(energy > 0.0F))
+    const shared::BoxPick pick =
+        pick_in_box(window.table, window.corners, window.blocks, window.x, window.y, coordinates);
+    view.reads += corner_reads(window.table, 2 * pick.steps);
+    if (pick.texel.x < 0)
         return std::nullopt;
-    const shared::TexelPick row =
-        pick_row(window.table, column.texel, window.y, rows, coordinates.y * energy);
-    view.reads += corner_reads(window.table, 2 + 2 * row.steps);
-    return TexelPoint{{column.texel, row.texel}, {column.fraction, row.fraction}};
+    return TexelPoint{pick.texel, pick.fraction};
 }
 
 glm::vec2 invert_point(const SamplingSlab& slab,
@@ -195,61 +184,42 @@ glm::vec2 invert_point(const SamplingSlab& slab,
                        const Window& window,
                        const TexelPoint& point) {
     const AxisBox &x = window.x, &y = window.y;
-    const auto coordinate = [](float before, float own, float fraction, float whole) {
-        return shared::fraction_of(before + fraction * own, whole);
+    if (!window.is_by_texels)
+        return invert_in_box(window.table, window.blocks, x, y, point.texel, point.fraction);
+    const auto row_energy = [&](int j) {
+        return texel_width(y, j) *
+               texel_luminance(slab.prepared.slab, window.image, point.texel.x, j);
     };
-    if (window.is_by_texels) {
-        const auto row_energy = [&](int j) {
-            return texel_width(y, j) *
-                   texel_luminance(slab.prepared.slab, window.image, point.texel.x, j);
-        };
-        float left = 0.0F, below = 0.0F, column = 0.0F;
-        for (int i = x.first; i < point.texel.x; ++i)
-            left += view.columns[static_cast<std::size_t>(i - x.first)];
-        for (int j = y.first; j <= y.last; ++j) {
-            below += j < point.texel.y ? row_energy(j) : 0.0F;
-            column += row_energy(j);
-        }
-        const float own = view.columns[static_cast<std::size_t>(point.texel.x - x.first)];
-        return {coordinate(left, own, point.fraction.x, window.energy),
-                coordinate(below, row_energy(point.texel.y), point.fraction.y, column)};
+    float left = 0.0F, below = 0.0F, column = 0.0F;
+    for (int i = x.first; i < point.texel.x; ++i)
+        left += view.columns[static_cast<std::size_t>(i - x.first)];
+    for (int j = y.first; j <= y.last; ++j) {
+        below += j < point.texel.y ? row_energy(j) : 0.0F;
+        column += row_energy(j);
     }
-    const float left = energy_left_of(window.table, x, y, window.parts, point.texel.x);
-    const float right = energy_left_of(window.table, x, y, window.parts, point.texel.x + 1);
-    const shared::BoxParts rows = row_parts(window.table, point.texel.x, y);
-    const float below = energy_below(window.table, point.texel.x, y, rows, point.texel.y);
-    const float above = energy_below(window.table, point.texel.x, y, rows, point.texel.y + 1);
-    return {coordinate(left, right - left, point.fraction.x, window.energy),
-            coordinate(below, above - below, point.fraction.y, parts_sum(rows))};
+    const float own = view.columns[static_cast<std::size_t>(point.texel.x - x.first)];
+    return {shared::fraction_of(left + point.fraction.x * own, window.energy),
+            shared::fraction_of(below + point.fraction.y * row_energy(point.texel.y), column)};
 }
 
 AperturePoint aperture_point(const SamplingView& view,
                              const AxisBox& x,
                              const AxisBox& y,
                              const TexelPoint& point) {
-    const shared::Interval in_x =
-        texel_part(view.x_view, view.x_texels, x.e_lo, x.e_hi, point.texel.x);
-    const shared::Interval in_y =
-        texel_part(view.y_view, view.y_texels, y.e_lo, y.e_hi, point.texel.y);
-    const glm::vec2 e(in_x.lo + point.fraction.x * (in_x.hi - in_x.lo),
-                      in_y.lo + point.fraction.y * (in_y.hi - in_y.lo));
-    return {{u_of_e(view.x_view, e.x), u_of_e(view.y_view, e.y)},
-            {t_of_e(view.x_view, e.x), t_of_e(view.y_view, e.y)}};
+    return aperture_at(view.x_view, view.y_view,
+                       {e_in_box(view.x_view, view.x_texels, x, point.texel.x, point.fraction.x),
+                        e_in_box(view.y_view, view.y_texels, y, point.texel.y, point.fraction.y)});
 }
 
 float light_kernel(const Slab& slab,
                    const SamplingView& view,
                    int image,
                    const AperturePoint& point) {
-    const glm::vec3 n = view.receiver.normal;
-    const float cosine = n.x * point.t.x + n.y * point.t.y - n.z;
+    const float cosine = shared::kernel_cosine(view.receiver.normal, point.t);
     if (!(cosine > 0.0F))
         return 0.0F;
-    const float basis = basis_at(slab, image, point.u_m);
-    if (slab.weighting == Weighting::Irradiance)
-        return basis * cosine;
-    const float r2 = 1.0F + glm::dot(point.t, point.t);
-    return basis * cosine / (r2 * r2);
+    return shared::light_kernel(basis_at(slab, image, point.u_m), cosine, point.t,
+                                slab.weighting == Weighting::Radiance);
 }
 
 float basis_at(const Slab& slab, int image, glm::vec2 u_m) {

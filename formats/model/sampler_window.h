@@ -4,6 +4,7 @@
 #pragma once
 
 #include "formats/model/sampler.h"
+#include "formats/shared/light_kernel.glsl.h"
 
 #include <glm/glm.hpp>
 
@@ -17,13 +18,14 @@ struct TexelPoint {
     glm::vec2 fraction{0.0F};
 };
 
-/// An image's box, with the energy of its columns. Tables resolve boxes that hold 1e-9 of their
+/// An image's box, with the energies of its blocks. Tables resolve boxes that hold 1e-9 of their
 /// image's light; of darker ones the texels are summed (columns in SamplingView::columns).
 struct Window {
     int image = 0;
     shared::AxisBox x{}, y{};
     shared::AreaTable table{};
-    shared::BoxParts parts{};
+    shared::BoxCorners corners{};
+    shared::BoxBlocks blocks{};
     bool is_by_texels = false;
     float energy = 0.0F;
 };
@@ -64,8 +66,9 @@ Window open_window(const SamplingSlab& slab,
                    const shared::AxisBox& x,
                    const shared::AxisBox& y);
 
-/// The point at which the restricted distribution takes the values `coordinates`, both in [0, 1):
-/// columns first, then rows within the column. Nothing where rounding found light in a dark column.
+/// The point at which the restricted distribution takes the values `coordinates`, both in [0, 1)
+/// (restricted.glsl.h; by texels: columns first, then rows within the column). Nothing where
+/// rounding found light in a dark column.
 std::optional<TexelPoint> pick_point(const SamplingSlab& slab,
                                      SamplingView& view,
                                      const Window& window,
@@ -77,10 +80,8 @@ glm::vec2 invert_point(const SamplingSlab& slab,
                        const Window& window,
                        const TexelPoint& point);
 
-/// A point on U, by the ray through a point of a texel: u and the tangents t.
-struct AperturePoint {
-    glm::vec2 u_m{0.0F}, t{0.0F};
-};
+/// A point on U, by the ray through a point of a texel.
+using shared::AperturePoint;
 AperturePoint aperture_point(const SamplingView& view,
                              const shared::AxisBox& x,
                              const shared::AxisBox& y,

@@ -5,6 +5,12 @@
 #include "formats/files/lightfield.h"
 #include "formats/model/axis_window.h"
 
+#undef SHARED_NAMESPACE
+#define SHARED_NAMESPACE shared::f64
+#include "formats/shared/pieces.glsl.h"
+#undef SHARED_NAMESPACE
+#define SHARED_NAMESPACE shared
+
 #include <glm/glm.hpp>
 
 #include <vector>
@@ -13,12 +19,10 @@ namespace nearfield::model {
 
 using AxisViewD = shared::f64::AxisView;
 
-/// A texel's overlap with one cell of a basis function: phi = a0 + x (a1 + x a2), x = (u - center)
-/// / pitch.
+/// A texel's overlap with one cell of a basis function.
 struct Piece {
     int texel;
-    double e_lo, e_hi;
-    double a0, a1, a2;
+    shared::f64::PhiPiece phi;
 };
 
 /// What one basis function sees along one axis.
