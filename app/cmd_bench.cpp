@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/files.h"
+#include "app/bench/shadows.h"
 #include "app/bench/summary.h"
 #include "app/bench/sweeps.h"
 #include "app/commands.h"
@@ -21,18 +22,21 @@
 namespace nearfield::app {
 namespace {
 
-enum class What { Accuracy };
+enum class What { Accuracy, Shadows };
+
+constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows";
 
 struct BenchCommand {
     What what = What::Accuracy;
-    std::string lamp, points, page, csv;
+    std::string input, points, page, csv;
     bool json = false;
     bench::SweepOptions options;
+    bench::ShadowSweepOptions shadows;
 };
 
 LightField read_lamp(const BenchCommand& command) {
-    return command.lamp.empty() ? sample_data::make_reference_lamp()
-                                : read_lightfield(command.lamp);
+    return command.input.empty() ? sample_data::make_reference_lamp()
+                                 : read_lightfield(command.input);
 }
 
 std::vector<model::Receiver> read_receivers(const BenchCommand& command) {
@@ -53,7 +57,7 @@ bench::Setup describe(const BenchCommand& command,
     return {
         fmt::format(
             "{}, {}{} x {} images of {} x {} texels, {} channel{}, {} basis",
-            command.lamp.empty() ? "the reference lamp" : command.lamp,
+            command.input.empty() ? "the reference lamp" : command.input,
             lamp.slabs.size() == 1 ? "" : fmt::format("{} slabs, the first ", lamp.slabs.size()),
             slab.grid.x, slab.grid.y, slab.texels.x, slab.texels.y, slab.channels,
             slab.channels == 1 ? "" : "s", slab.profile.name),
@@ -62,8 +66,8 @@ bench::Setup describe(const BenchCommand& command,
         command_line, machine()};
 }
 
-void run(const BenchCommand& command, const std::string& command_line) {
-    check_outputs({command.page, command.csv}, {command.lamp, command.points});
+void run_accuracy(const BenchCommand& command, const std::string& command_line) {
+    check_outputs({command.page, command.csv}, {command.input, command.points});
     const LightField lamp = read_lamp(command);
     const std::vector<model::Receiver> receivers = read_receivers(command);
     const bench::Setup setup = describe(command, lamp, receivers.size(), command_line);
@@ -84,6 +88,31 @@ void run(const BenchCommand& command, const std::string& command_line) {
         say(fmt::format("settings left out by --time-limit-s: {}\n", findings.skipped));
     say(fmt::format("{}: {} settings measured in {:.0f} s on {} threads\n", command.page,
                     findings.results.size(), findings.time_s, findings.threads));
+}
+
+void run_shadows(const BenchCommand& command, const std::string& command_line) {
+    if (command.input.empty())
+        throw CLI::RequiredError("a scene");
+    check_outputs({command.page}, {command.input});
+    const Scene scene = read_scene(command.input);
+    ProgressLine progress(kOfShadows);
+    const bench::ShadowFindings findings = bench::run_shadow_sweeps(
+        scene, command.shadows, [&](double fraction) { progress.update(fraction); });
+    progress.finish();
+    const bench::ShadowSetup setup{command.input, command_line, machine()};
+    bench::write_page(findings, setup, command.page);
+    if (command.json)
+        print(bench::as_json(findings, setup));
+    say(fmt::format("{}: {} settings measured in {:.0f} s on {}\n", command.page,
+                    findings.results.size(), findings.time_s, findings.device));
+}
+
+// What only the other of the two takes.
+void refuse_foreign_options(const CLI::App& command, const std::string& foreign) {
+    for (const CLI::Option* option : command.get_options())
+        if (option->count() > 0 && option->get_group() == foreign)
+            throw CLI::ValidationError(option->get_name(),
+                                       fmt::format("expected no option of {}", foreign));
 }
 
 // The call as it can be repeated: options that were given, in the order of the help.
@@ -158,33 +187,54 @@ void add_sweep_options(CLI::App& sub, bench::SweepOptions& options) {
                std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
 }
 
+void add_shadow_options(CLI::App& sub, bench::ShadowSweepOptions& options) {
+    sub.add_option("--camera", options.camera, "camera by name; the first by default")
+        ->type_name("NAME");
+    add_number(sub, "--width", options.size_px.x, 1, 16384, "PX", "pixels");
+    add_number(sub, "--rays", options.samples, 2, 1 << 20, "N",
+               "rays of a pixel and lamp in the traced picture");
+    add_number(sub, "--runs", options.repeats, 1, 1000, "N",
+               "of each setting; its least times count");
+    add_sizes(sub, "--maps", options.maps, 2048, "maps a lamp; one a cell comes always");
+    add_sizes(sub, "--map-px", options.map_px, 16384, "sizes of a map, pixels a side");
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app) {
     auto c = std::make_shared<BenchCommand>();
     CLI::App* sub = add_command(
-        app, "bench", "Measures what accuracy costs in time: every sampler, every knob",
+        app, "bench", "Measures what accuracy costs in time: samplers and their knobs; shadow maps",
         {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
          "nearfield bench accuracy --samplers sum,pdis --sweeps samplers --k 16,63,1000 -o "
-         "pdis.html"});
-    add_choice(*sub, "what", c->what, {{"accuracy", What::Accuracy}}, "error against time")
+         "pdis.html",
+         "nearfield bench shadows scene.gltf -o shadows.html"});
+    add_choice(*sub, "what", c->what, {{"accuracy", What::Accuracy}, {"shadows", What::Shadows}},
+               "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene")
         ->required();
     sub->add_option(
-           "luminaire", c->lamp,
-           "luminaire or light field, .exr; by default the reference lamp (nearfield simulate "
-           "reference)")
+           "input", c->input,
+           "accuracy: luminaire or light field, .exr, by default the reference lamp (nearfield "
+           "simulate reference); shadows: scene, .gltf or .glb")
         ->type_name("FILE");
+    sub->add_option("-o,--output", c->page, "page to write, .html")->required()->type_name("FILE");
+    sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
+    sub->option_defaults()->group(kOfAccuracy);
     CLI::Option* points = sub->add_option(
         "--receivers", c->points,
         "CSV with columns x_m,y_m,z_m,nx,ny,nz in the luminaire's frame; by default those "
         "of the reference lamp");
     points->type_name("FILE");
-    sub->add_option("-o,--output", c->page, "page to write, .html")->required()->type_name("FILE");
     sub->add_option("--csv", c->csv, "all measurements as a table")->type_name("FILE");
-    sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
     add_sweep_options(*sub, c->options);
-    sub->callback([c, sub] { run(*c, command_line(*sub)); });
+    sub->option_defaults()->group(kOfShadows);
+    add_shadow_options(*sub, c->shadows);
+    sub->callback([c, sub] {
+        const bool is_shadows = c->what == What::Shadows;
+        refuse_foreign_options(*sub, is_shadows ? kOfAccuracy : kOfShadows);
+        (is_shadows ? run_shadows : run_accuracy)(*c, command_line(*sub));
+    });
 }
 
 }  // namespace nearfield::app

@@ -4,6 +4,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/render_options.h"
+#include "render/device.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -32,12 +33,35 @@ std::string so_far(const render::RenderProgress& at, const render::RenderOptions
     return text;
 }
 
+bool has_png(const RenderCommand& command) {
+    return command.options.effects.tone_mapping != render::Switch::Off;
+}
+
+void complete(RenderCommand& command) {
+    command.options.time_s = 1e-3 * command.time_ms;
+    if (!has_png(command) && !command.png.empty())
+        throw CLI::ValidationError("--png", "expected no --effect tone-mapping=off beside it");
+    command.options.is_displayed = has_png(command);
+    check_options([&] { render::check(command.options); });
+    if (has_png(command) && command.png.empty())
+        command.png = std::filesystem::path(command.output.path).replace_extension(".png").string();
+}
+
+/// Tone-maps and writes the PNG. Returns the exposure.
+double write_display(const RenderCommand& command,
+                     const Picture& picture,
+                     render::RenderReport& report) {
+    const double start_s = now_s();
+    const render::Display display = render::display(picture, command.display);
+    report.costs.push_back(
+        {render::PassId::ToneMapping, now_s() - start_s, static_cast<double>(display.srgb.size())});
+    write_png(display.srgb, picture.size_px, command.png);
+    return display.exposure_ev;
+}
+
 void run(RenderCommand command) {
     const double start_s = now_s();
-    command.options.time_s = 1e-3 * command.time_ms;
-    check_options([&] { render::check(command.options); });
-    if (command.png.empty())
-        command.png = std::filesystem::path(command.output.path).replace_extension(".png").string();
+    complete(command);
     const Scene scene = read_scene(command.scene);
     check_files(command, scene);
     for (const std::string& note : scene.notes)
@@ -54,11 +78,15 @@ void run(RenderCommand command) {
     picture.provenance.inputs.push_back(describe_input(command.scene));
     const RunRecord run = nearfield::finish_run(start_s, report.threads);
     write_picture(picture, command.output.stored(run), command.output.path);
-    const render::Display display = render::display(picture, command.display);
-    write_png(display.srgb, picture.size_px, command.png);
     say(fmt::format("{}: {}\n", command.output.path,
                     render::summary(report, command.options, picture.size_px)));
-    say(fmt::format("{}: exposure {:.2f} EV; {}\n", command.png, display.exposure_ev, cost(run)));
+    if (has_png(command))
+        say(fmt::format("{}: exposure {:.2f} EV; {}\n", command.png,
+                        write_display(command, picture, report), cost(run)));
+    else
+        say(fmt::format("{}: {}\n", command.output.path, cost(run)));
+    if (command.explain)
+        print(render::explain(report));
     if (!report.is_error_reached)
         throw CLI::RuntimeError(3);
 }
@@ -72,7 +100,8 @@ void add_render(CLI::App& app) {
                     {"nearfield render out/scene.gltf -o picture.exr",
                      "nearfield render out/scene.gltf -o picture.exr --width 1280 --exposure-ev 4",
                      "nearfield render out/scene.gltf -o picture.exr --error 0.01",
-                     "nearfield render out/scene.gltf -o preview.exr --time-ms 500"});
+                     "nearfield render out/scene.gltf -o preview.exr --time-ms 500",
+                     "nearfield render out/scene.gltf -o picture.exr --explain"});
     add_render_options(*sub, *c);
     sub->callback([c] { run(*c); });
 }

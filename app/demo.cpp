@@ -5,6 +5,7 @@
 #include "formats/files/error.h"
 #include "formats/model/tables.h"
 #include "formats/scene/scene.h"
+#include "render/device.h"
 #include "render/display.h"
 #include "sample_data/demo_scene.h"
 #include "sample_data/pictures.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "formats/report/page.h"
-#include "render/cpu/render.h"
+#include "render/report.h"
 #include "sample_data/simulate.h"
 
 #include <functional>

@@ -4,8 +4,14 @@
 #include "app/options.h"
 #include "app/sampler_options.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace nearfield::app {
 namespace {
@@ -50,6 +56,66 @@ void add_light_options(CLI::App& sub, RenderCommand& c) {
                "stop in time, loading included, writing not; 0: no limit");
 }
 
+void add_shadow_map_options(CLI::App& sub, RenderCommand& c) {
+    render::ShadowMapOptions& maps = c.options.shadow_maps;
+    add_number(sub, "--shadow-maps", maps.maps, 0, 65536, "N",
+               "gl: of a lamp, at most; 0: one a cell of its U plane");
+    add_number(sub, "--shadow-map-px", maps.map_px, 1, 16384, "PX",
+               "gl: a shadow map's side; finer, nearer to traced shadows");
+    add_choice(sub, "--shadow-taps", maps.pcf_taps, {{"1", 1}, {"4", 4}, {"9", 9}, {"16", 16}},
+               "gl: texels of a map that a receiver is compared with; more, softer");
+}
+
+struct EffectName {
+    const char* name;
+    render::Switch render::Effects::*effect;
+};
+constexpr EffectName kEffects[] = {{"color", &render::Effects::color},
+                                   {"shadows", &render::Effects::shadows},
+                                   {"gloss", &render::Effects::gloss},
+                                   {"tone-mapping", &render::Effects::tone_mapping}};
+constexpr std::pair<const char*, render::Switch> kSwitches[] = {
+    {"auto", render::Switch::Auto}, {"on", render::Switch::On}, {"off", render::Switch::Off}};
+
+struct EffectChoice {
+    render::Switch render::Effects::*effect;
+    render::Switch wanted;
+};
+
+/// "shadows=off"; nothing where it is anything else.
+std::optional<EffectChoice> parse_effect(const std::string& text) {
+    for (const EffectName& known : kEffects)
+        for (const auto& [word, wanted] : kSwitches)
+            if (text == fmt::format("{}={}", known.name, word))
+                return EffectChoice{known.effect, wanted};
+    return std::nullopt;
+}
+
+std::string effect_names() {
+    std::string names;
+    for (const EffectName& known : kEffects)
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", known.name);
+    return names;
+}
+
+void add_effect_options(CLI::App& sub, RenderCommand& c) {
+    CLI::Option* effect = sub.add_option_function<std::vector<std::string>>(
+        "--effect",
+        [&c](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts)
+                if (const auto choice = parse_effect(text))
+                    c.options.effects.*choice->effect = choice->wanted;
+        },
+        fmt::format("of {}: on and off force what is otherwise computed only if the scene calls "
+                    "for it; may be given again",
+                    effect_names()));
+    effect->type_name("NAME=auto|on|off")->allow_extra_args(false);
+    add_checks(effect, fmt::format("NAME=auto, =on or =off, NAME one of {}", effect_names()),
+               [](const std::string& text) { return parse_effect(text).has_value(); });
+    sub.add_flag("--explain", c.explain,
+                 "print what was computed and what not, why, and what each pass took");
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& sub, RenderCommand& c) {
@@ -59,9 +125,14 @@ void add_render_options(CLI::App& sub, RenderCommand& c) {
     add_checks(add_output(sub, c.output, "picture to write, NAME.exr"), "NAME.exr",
                [](const std::string& path) { return path.ends_with(".exr"); });
     sub.add_option("--png", c.png, "tone-mapped picture; by default NAME.png")->type_name("FILE");
-    add_choice(sub, "--device", c.device, {{"cpu", Device::Cpu}}, "what computes");
+    add_choice(
+        sub, "--device", c.options.device,
+        {{"auto", render::Device::Auto}, {"cpu", render::Device::Cpu}, {"gl", render::Device::Gl}},
+        "what computes; auto: OpenGL where there is a context, else the CPU");
     add_picture_options(sub, c);
     add_light_options(sub, c);
+    add_effect_options(sub, c);
+    add_shadow_map_options(sub, c);
     add_number(sub, "--threads", c.options.threads, 0, 4096, "N",
                "0: all cores; the picture is the same");
     sub.add_flag("--sigma-measured", c.options.sigma_measured,

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "app/output.h"
-#include "render/cpu/render.h"
 #include "render/display.h"
+#include "render/options.h"
 
 #include <optional>
 #include <string>
@@ -15,13 +15,11 @@ class App;
 
 namespace nearfield::app {
 
-enum class Device { Cpu };
-
 struct RenderCommand {
     std::string scene, png;
     Output output;
-    Device device = Device::Cpu;
     double time_ms = 0;  // 0: no limit
+    bool explain = false;
     render::RenderOptions options;
     render::DisplayOptions display;
 };

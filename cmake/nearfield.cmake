@@ -52,3 +52,17 @@ function(nearfield_test)
         # Tests of one executable write to the same folder: never two at once.
         PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 2400 RESOURCE_LOCK ${ARG_NAME})
 endfunction()
+
+# nearfield_shaders(render_gpu FILES render/shaders/a.comp formats/shared/b.glsl.h): puts the sources, under their paths
+# from the project's root, into the library: render/gpu/shader_sources.h gives them back.
+function(nearfield_shaders name)
+    cmake_parse_arguments(ARG "" "" "FILES" ${ARGN})
+    set(output ${CMAKE_CURRENT_BINARY_DIR}/shader_sources.cpp)
+    list(TRANSFORM ARG_FILES PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE inputs)
+    add_custom_command(OUTPUT ${output}
+        COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} "-DFILES=${ARG_FILES}" -DOUTPUT=${output}
+                -P ${PROJECT_SOURCE_DIR}/cmake/embed_shaders.cmake
+        DEPENDS ${inputs} ${PROJECT_SOURCE_DIR}/cmake/embed_shaders.cmake
+        VERBATIM)
+    target_sources(nearfield_${name} PRIVATE ${output})
+endfunction()

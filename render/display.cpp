@@ -27,6 +27,10 @@ unsigned char encode(float linear) {
 
 }  // namespace
 
+double white_of(double exposure_ev) {
+    return kSaturation * std::exp2(exposure_ev);
+}
+
 double automatic_exposure_ev(const Layer& rgb, ToneMap tonemap) {
     std::vector<float> lit;
     double sum = 0.0;
@@ -55,7 +59,7 @@ Display display(const Picture& picture, const DisplayOptions& options) {
     Display result;
     result.exposure_ev =
         options.exposure_ev.value_or(automatic_exposure_ev(*found, options.tonemap));
-    const auto white = static_cast<float>(kSaturation * std::exp2(result.exposure_ev));
+    const auto white = static_cast<float>(white_of(result.exposure_ev));
     const std::size_t pixels = found->values.size() / 3;
     result.srgb.reserve(3 * pixels);
     for (std::size_t i = 0; i < pixels; ++i) {

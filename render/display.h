@@ -29,6 +29,9 @@ struct Display {
 /// Tone maps the picture's default layer. Throws Error if it has none of three channels.
 Display display(const Picture& picture, const DisplayOptions& options);
 
+/// The radiance that becomes 1 before the curve.
+double white_of(double exposure_ev);
+
 /// Filmic: 95 % of the pixels that light reaches stay below 1. Papers: the frame's mean luminance
 /// becomes 1. 0 for a picture without light.
 double automatic_exposure_ev(const Layer& rgb, ToneMap tonemap);

@@ -31,6 +31,7 @@ LIBRARIES = {
     r"xxhash": ["formats/files"],
     r"tiny_gltf|tinygltf": ["formats/scene"],
     r"embree": ["render/cpu"],
+    r"epoxy/": ["render/gpu", "tests/render/gpu"],
     r"hwy/": ["formats/model"],
     r"CLI/": ["app"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],

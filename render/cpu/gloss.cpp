@@ -47,7 +47,7 @@ glm::dvec3 along(const GlossQuery& query,
         if (!glm::any(glm::greaterThan(radiance, glm::vec3(0.0F))))
             continue;
         const glm::dvec4 u_slab(glm::dvec2(met.u_m), -slab.prepared->slab.delta_m, 1.0);
-        if (!is_visible(query.lamp, query.tracer, query.shade.hit,
+        if (!is_visible(query.lamp, query.tracer, query.shade,
                         glm::dvec3(slab.world_from_slab * u_slab), scratch))
             continue;
         const float light_density = model::marginal_density_omega(

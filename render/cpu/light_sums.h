@@ -2,8 +2,8 @@
 /// Unshadowed light by the windowed sum, for neighboring hits together.
 #pragma once
 
-#include "render/cpu/lamps.h"
 #include "render/cpu/tracer.h"
+#include "render/lamps.h"
 
 #include <cstdint>
 #include <span>

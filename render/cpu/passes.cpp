@@ -191,21 +191,45 @@ void add_bias_layer(Frame& frame) {
     frame.picture.layers.back().values.assign(frame.picture.layers[kSigma].values.size(), 0.0F);
 }
 
-/// Merges in the tiles' order, and turns time spent by all threads into shares of the wall time.
-void merge(const Run& run, double wall_s, RenderReport& report) {
-    for (const TileReport& tile : run.reports) {
-        report.camera_rays += tile.camera_rays;
-        report.shadow_rays += tile.shadow_rays;
-        report.multiply_adds += static_cast<double>(tile.multiply_adds);
-        report.camera_s += tile.camera_s;
-        report.sums_s += tile.sums_s;
-        report.visibility_s += tile.visibility_s;
+/// Of all tiles, in their order.
+TileReport total_of(const std::vector<TileReport>& reports) {
+    TileReport total;
+    for (const TileReport& tile : reports) {
+        total.camera_rays += tile.camera_rays;
+        total.shadow_rays += tile.shadow_rays;
+        total.multiply_adds += tile.multiply_adds;
+        total.camera_s += tile.camera_s;
+        total.sums_s += tile.sums_s;
+        total.shading_s += tile.shading_s;
+        total.shadow_rays_s += tile.shadow_rays_s;
+        total.gloss_s += tile.gloss_s;
     }
-    const double spent_s = report.camera_s + report.sums_s + report.visibility_s;
+    return total;
+}
+
+/// Counts, and time spent by all threads as shares of the wall time.
+void fill_report(const TileReport& total, double wall_s, RenderReport& report) {
+    report.camera_rays = total.camera_rays;
+    report.shadow_rays = total.shadow_rays;
+    report.multiply_adds = static_cast<double>(total.multiply_adds);
+    const double spent_s = total.camera_s + total.sums_s + total.shading_s;
     const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;
-    report.camera_s *= share;
-    report.sums_s *= share;
-    report.visibility_s *= share;
+    report.camera_s = total.camera_s * share;
+    report.sums_s = total.sums_s * share;
+    report.visibility_s = total.shading_s * share;
+    // What is left of shading without samples is adding up the sums.
+    const double rest_s =
+        std::max(total.shading_s - total.shadow_rays_s - total.gloss_s, 0.0) * share;
+    const bool has_samples = has_pass(report.plan, PassId::Samples);
+    const auto cost = [&](PassId id, double time_s) {
+        if (has_pass(report.plan, id))
+            report.costs.push_back({id, time_s, 0.0});
+    };
+    cost(PassId::CameraRays, report.camera_s);
+    cost(PassId::LightSums, report.sums_s + (has_samples ? 0.0 : rest_s));
+    cost(PassId::Samples, rest_s);
+    cost(PassId::ShadowRays, total.shadow_rays_s * share);
+    cost(PassId::Gloss, total.gloss_s * share);
 }
 
 }  // namespace
@@ -217,9 +241,10 @@ void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, Rende
     Run run{frame, hooks, start_s, std::vector<TileReport>(tiles), std::vector<TileWeight>(tiles),
             0.0,   {},    0.0};
     const bool has_goal = options.error_rel > 0.0 || options.time_s > 0.0;
-    const int most = options.samples > 0 ? options.samples
-                     : has_goal          ? kMostSamples
-                                         : kUsualSamples;
+    const int most = !frame.plan.draws_samples ? kFewestSamples
+                     : options.samples > 0     ? options.samples
+                     : has_goal                ? kMostSamples
+                                               : kUsualSamples;
     Pass pass;
     pass.samples = has_goal ? std::min(kFirstSamples, most) : most;
     pass.q = options.q;
@@ -242,12 +267,12 @@ void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, Rende
         pass.samples = has_goal ? next_samples(run, pass, cost, most) : 0;
         ++pass.index;
     }
-    merge(run, now_s() - passes_start_s, report);
+    fill_report(total_of(run.reports), now_s() - passes_start_s, report);
     for_each(tiles, [&](std::size_t tile) {
         finish_tile(frame, first_pixel(frame, tile), run.weights[tile]);
     });
     report.passes = static_cast<int>(pass.index);
-    report.samples = run.drawn;
+    report.samples = frame.plan.draws_samples ? run.drawn : 0.0;
     report.q = pass.q;
 }
 

@@ -27,14 +27,25 @@ glm::vec2 shift_of_set(const ShadeQuery& query, int set, std::uint32_t seed) {
 
 bool is_visible(const Lamp& lamp,
                 const Tracer& tracer,
-                const Hit& hit,
+                const ShadeQuery& query,
                 glm::dvec3 from_world_m,
                 Scratch& scratch) {
+    const Hit& hit = query.hit;
     if (!(glm::dot(from_world_m - hit.position_world_m, hit.geometric_normal) > 0.0))
         return false;
+    if (!query.has_shadows)
+        return true;
     ++scratch.shadow_rays;
     return !tracer.is_occluded(hit.position_world_m + hit.geometric_normal * hit.offset_m,
                                from_world_m, lamp.mask);
+}
+
+bool faces(const Lamp& lamp, const Hit& hit) {
+    for (const PlacedSlab& slab : lamp.slabs)
+        for (const glm::dvec3 corner : slab.u_corners_world_m)
+            if (glm::dot(corner - hit.position_world_m, hit.geometric_normal) > 0.0)
+                return true;
+    return false;
 }
 
 glm::vec3 to_viewer_local(const ShadeQuery& query) {

@@ -5,8 +5,8 @@
 #include "formats/shared/brdf.glsl.h"
 #include "formats/shared/frame.glsl.h"
 #include "render/cpu/light_sums.h"
-#include "render/cpu/sample_sets.h"
 #include "render/cpu/tracer.h"
+#include "render/sample_sets.h"
 
 #include <glm/glm.hpp>
 
@@ -27,6 +27,7 @@ struct ShadeQuery {
     std::uint32_t first_set = 0;  // of this camera sample and lamp
     std::uint32_t seed = 0;
     model::Shift shift = model::Shift::Random;
+    bool has_shadows = true;  // false: light passes through everything, and no ray is traced
 };
 
 /// One slab's part in one hit's light, from which shadow samples are drawn.
@@ -36,14 +37,24 @@ struct SlabEnergy {
     float y = 0.0F;                  // the sum of image_y in order
 };
 
+/// A point on a lamp's U planes, and what it carries if it is visible.
+struct LampPoint {
+    glm::dvec3 position_world_m{0.0};
+    glm::dvec3 weight{0.0};     // share of the unshadowed irradiance
+    glm::dvec3 reflected{0.0};  // of glossy surfaces: times f_r
+};
+
 /// Buffers that are reused from hit to hit, and what is counted.
 struct Scratch {
     std::vector<SetSums> sets;
+    std::vector<LampPoint> points;            // of all sets, one after the other
+    std::vector<char> is_visible;             // [point], or [sample] of a set
     std::vector<SlabEnergy> energies;         // [slab]
     std::vector<std::vector<float>> image_y;  // [slab][image]
     std::vector<model::SamplingView> views;   // [slab]
     std::vector<model::LightSample> samples;
     std::uint64_t shadow_rays = 0;
+    double shadow_rays_s = 0, gloss_s = 0;  // spent; the lobe's own rays are gloss
 };
 
 struct LampLight {
@@ -84,12 +95,16 @@ LampLight shade_sampled(const Lamp& lamp,
 
 // What the three share.
 
-/// Whether the lamp's light reaches the hit from a point in the world; counts the shadow ray.
+/// Whether the lamp's light reaches the hit from a point in the world; counts the shadow ray, where
+/// the query has shadows.
 bool is_visible(const Lamp& lamp,
                 const Tracer& tracer,
-                const Hit& hit,
+                const ShadeQuery& query,
                 glm::dvec3 from_world_m,
                 Scratch& scratch);
+
+/// Whether any of the lamp lies before the hit's triangle: what decides without shadows.
+bool faces(const Lamp& lamp, const Hit& hit);
 
 glm::vec2 shift_of_set(const ShadeQuery& query, int set, std::uint32_t seed);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/cpu/gloss.h"
+#include "render/cpu/lap.h"
 #include "render/cpu/shade.h"
 
 #include <algorithm>
@@ -10,27 +11,45 @@ namespace {
 // Shifts of the lobe's samples are independent of the lamp's.
 constexpr std::uint32_t kLobeSeed = 0x9e3779b9U;
 
+glm::dvec3 position_world_m(const Lamp& lamp, const model::LightSample& sample) {
+    const PlacedSlab& slab = lamp.slabs[static_cast<std::size_t>(sample.slab)];
+    const glm::dvec4 u_slab(glm::dvec2(sample.u_m), -slab.prepared->slab.delta_m, 1.0);
+    return {slab.world_from_slab * u_slab};
+}
+
+/// Which of the lamp's samples are visible.
+void trace_samples(const GlossQuery& gloss, Scratch& scratch) {
+    Lap lap;
+    scratch.is_visible.clear();
+    for (const model::LightSample& sample : scratch.samples)
+        scratch.is_visible.push_back(is_visible(gloss.lamp, gloss.tracer, gloss.shade,
+                                                position_world_m(gloss.lamp, sample), scratch)
+                                         ? 1
+                                         : 0);
+    scratch.shadow_rays_s += lap.time_s();
+}
+
 /// One set of the lamp's samples, and of the lobe's where the surface is glossy.
 SetSums sample_set(const GlossQuery& gloss, int set, Scratch& scratch) {
     const ShadeQuery& query = gloss.shade;
     model::draw(gloss.lamp.file->sampling, scratch.views, gloss.sampler,
                 shift_of_set(query, set, query.seed), scratch.samples);
+    trace_samples(gloss, scratch);
     const bool is_glossy = shared::brdf_is_glossy(query.brdf);
     SetSums result;
-    for (const model::LightSample& sample : scratch.samples) {
-        const auto s = static_cast<std::size_t>(sample.slab);
-        const PlacedSlab& slab = gloss.lamp.slabs[s];
+    for (std::size_t k = 0; k < scratch.samples.size(); ++k) {
+        const model::LightSample& sample = scratch.samples[k];
         const glm::dvec3 light(sample.light);
         result.all += light;
-        const glm::dvec4 u_slab(glm::dvec2(sample.u_m), -slab.prepared->slab.delta_m, 1.0);
-        const glm::dvec3 from(slab.world_from_slab * u_slab);
-        if (!is_visible(gloss.lamp, gloss.tracer, query.hit, from, scratch))
+        if (scratch.is_visible[k] == 0)
             continue;
         result.lit += light;
         result.visible += 1.0;
         if (is_glossy)
-            result.reflected += light * weighted_lobe(gloss, scratch.views[s], sample,
-                                                      from - query.hit.position_world_m);
+            result.reflected +=
+                light *
+                weighted_lobe(gloss, scratch.views[static_cast<std::size_t>(sample.slab)], sample,
+                              position_world_m(gloss.lamp, sample) - query.hit.position_world_m);
     }
     // A sampler's samples sum to the estimate, the lobe's have it as their mean; sets pool by size.
     const double size = gloss.sampler.samples;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/glossy_sum.h"
 #include "formats/shared/rng.glsl.h"
+#include "render/cpu/lap.h"
 #include "render/cpu/shade.h"
 
 #include <algorithm>
@@ -11,12 +12,6 @@ namespace nearfield::render {
 namespace {
 
 constexpr float kBelowOne = 1.0F - 0x1p-24F;
-
-/// A point on a lamp's U planes, in the world, and its share of the unshadowed irradiance.
-struct LampPoint {
-    glm::dvec3 position_world_m{0.0};
-    glm::vec3 weight{0.0F};
-};
 
 /// Draws by energy among the slabs, then within the one drawn. select: uniform in [0, 1).
 LampPoint draw_by_sums(const Lamp& lamp,
@@ -41,44 +36,45 @@ LampPoint draw_by_sums(const Lamp& lamp,
         model::sample_aperture(*slab.prepared, energy.receiver, energy.image_y, energy.y,
                                std::clamp(rest / energy.y, 0.0F, kBelowOne), xi);
     const glm::dvec4 u_slab(glm::dvec2(sample.u_m), -slab.prepared->slab.delta_m, 1.0);
-    return {glm::dvec3(slab.world_from_slab * u_slab), sample.weight * (total / energy.y)};
+    return {glm::dvec3(slab.world_from_slab * u_slab),
+            glm::dvec3(sample.weight * (total / energy.y)), glm::dvec3(0.0)};
 }
 
-/// One set of points drawn by the energies. is_glossy: what they reflect to the viewer is summed
-/// too.
-SetSums trace_set(const Lamp& lamp,
-                  const Tracer& tracer,
-                  const ShadeQuery& query,
-                  int set,
-                  bool is_glossy,
-                  Scratch& scratch) {
+/// Adds one set of points drawn by the energies. is_glossy: with what they reflect to the viewer.
+void draw_set(
+    const Lamp& lamp, const ShadeQuery& query, int set, bool is_glossy, Scratch& scratch) {
     const int size = query.sets.size_of(set);
     const glm::uvec2 words = glm::uvec2(shift_of_set(query, set, query.seed) * 0x1p24F) << 8U;
     const float start = shared::unit_float(shared::hash4({words.x, words.y, query.seed, 0U}).x);
     const glm::vec3 to_viewer = to_viewer_local(query);
-    SetSums result;
-    result.count = size;
     for (int k = 0; k < size; ++k) {
         const float select = (static_cast<float>(k) + start) / static_cast<float>(size);
-        const LampPoint point =
-            draw_by_sums(lamp, scratch.energies, std::min(select, kBelowOne),
-                         shared::r2_point(static_cast<std::uint32_t>(k), words));
-        const glm::dvec3 weight(point.weight);
-        glm::dvec3 reflected(0.0);
+        LampPoint point = draw_by_sums(lamp, scratch.energies, std::min(select, kBelowOne),
+                                       shared::r2_point(static_cast<std::uint32_t>(k), words));
         if (is_glossy) {
             const glm::dvec3 towards = point.position_world_m - query.hit.position_world_m;
-            reflected =
-                weight *
+            point.reflected =
+                point.weight *
                 glm::dvec3(shared::brdf_eval(
                     query.brdf,
                     shared::local_from_world(query.frame, glm::vec3(glm::normalize(towards))),
                     to_viewer));
         }
-        result.all += weight;
-        result.all_reflected += reflected;
-        if (is_visible(lamp, tracer, query.hit, point.position_world_m, scratch)) {
-            result.lit += weight;
-            result.reflected += reflected;
+        scratch.points.push_back(point);
+    }
+}
+
+/// Sums over one set's points, of which `first` is the first.
+SetSums sum_set(const Scratch& scratch, std::size_t first, int size) {
+    SetSums result;
+    result.count = size;
+    for (std::size_t k = first; k < first + static_cast<std::size_t>(size); ++k) {
+        const LampPoint& point = scratch.points[k];
+        result.all += point.weight;
+        result.all_reflected += point.reflected;
+        if (scratch.is_visible[k] != 0) {
+            result.lit += point.weight;
+            result.reflected += point.reflected;
             result.visible += 1.0;
         }
     }
@@ -90,9 +86,22 @@ void trace_sets(const Lamp& lamp,
                 const ShadeQuery& query,
                 bool is_glossy,
                 Scratch& scratch) {
-    scratch.sets.clear();
+    scratch.points.clear();
     for (int set = 0; set < query.sets.sets; ++set)
-        scratch.sets.push_back(trace_set(lamp, tracer, query, set, is_glossy, scratch));
+        draw_set(lamp, query, set, is_glossy, scratch);
+    Lap lap;
+    scratch.is_visible.clear();
+    for (const LampPoint& point : scratch.points)
+        scratch.is_visible.push_back(
+            is_visible(lamp, tracer, query, point.position_world_m, scratch) ? 1 : 0);
+    scratch.shadow_rays_s += lap.time_s();
+    scratch.sets.clear();
+    std::size_t first = 0;
+    for (int set = 0; set < query.sets.sets; ++set) {
+        const int size = query.sets.size_of(set);
+        scratch.sets.push_back(sum_set(scratch, first, size));
+        first += static_cast<std::size_t>(size);
+    }
 }
 
 /// The surface in one slab's frame.
@@ -119,6 +128,11 @@ double texels_per_window(const Slab& slab, float z_m) {
     return std::min(texels.x, texels.y);
 }
 
+/// The sums themselves, without noise.
+Estimated without_shadows(glm::vec3 irradiance, glm::vec3 radiance) {
+    return {glm::dvec3(irradiance), glm::dvec3(radiance), 0.0};
+}
+
 }  // namespace
 
 LampLight shade_diffuse(const Lamp& lamp,
@@ -129,6 +143,10 @@ LampLight shade_diffuse(const Lamp& lamp,
                         Scratch& scratch) {
     if (!(sums.total_y[index] > 0.0F))
         return {};
+    const glm::vec3 unshadowed = sums.irradiance[index];
+    if (!query.has_shadows)
+        return light_of(lamp, query, without_shadows(unshadowed, diffuse_of(query) * unshadowed),
+                        unshadowed);
     scratch.energies.clear();
     for (const LightSums::OfSlab& slab : sums.slabs) {
         const std::size_t images = slab.image_y.size() / slab.y.size();
@@ -137,7 +155,6 @@ LampLight shade_diffuse(const Lamp& lamp,
                                     slab.y[index]});
     }
     trace_sets(lamp, tracer, query, false, scratch);
-    const glm::vec3 unshadowed = sums.irradiance[index];
     return light_of(
         lamp, query,
         combine_ratio(scratch.sets, glm::dvec3(diffuse_of(query)), glm::dvec3(unshadowed)),
@@ -176,6 +193,9 @@ LampLight shade_reflected(const Lamp& lamp,
     }
     if (!(total > 0.0F))
         return {};
+    if (!query.has_shadows)
+        return light_of(lamp, query, without_shadows(unshadowed.irradiance, unshadowed.radiance),
+                        unshadowed.irradiance);
     trace_sets(lamp, tracer, query, true, scratch);
     return light_of(lamp, query,
                     combine_reflected(scratch.sets, glm::dvec3(unshadowed.irradiance),

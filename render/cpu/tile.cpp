@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/cpu/tile.h"
 
-#include "formats/files/provenance.h"
 #include "formats/shared/rng.glsl.h"
 #include "formats/shared/tonemap.glsl.h"
+#include "render/cpu/lap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +14,6 @@ namespace {
 // Light sums run over the hits of so many pixels together: their windows overlap, and what they
 // read of an image, 16 receivers' weights included, stays in the first-level cache.
 constexpr int kBlockPx = 4;
-
-/// The middle of one of n x n strata of a pixel, moved within it at random if n > 1. Pixel (x, y)
-/// spans x ... x + 1.
-glm::dvec2 film_position_px(
-    glm::ivec2 pixel, int stratum, int n, std::uint32_t random_x, std::uint32_t random_y) {
-    const glm::dvec2 jitter =
-        n == 1 ? glm::dvec2(0.5)
-               : glm::dvec2(shared::unit_float(random_x), shared::unit_float(random_y));
-    return glm::dvec2(pixel) +
-           (glm::dvec2(stratum % n, stratum / n) + jitter) / static_cast<double>(n);
-}
-
-glm::dvec3 camera_ray(const Camera& camera, glm::ivec2 size_px, glm::dvec2 position_px) {
-    const double tan_half = std::tan(0.5 * camera.yfov_rad);
-    const double px =
-        2.0 * tan_half / static_cast<double>(size_px.y);  // square pixels at distance 1
-    const glm::dvec3 direction((position_px.x - 0.5 * size_px.x) * px,
-                               (0.5 * size_px.y - position_px.y) * px, -1.0);
-    // Cameras of scenes made elsewhere may carry a scale; directions do not.
-    return glm::normalize(glm::dmat3(camera.world_from_camera) * direction);
-}
 
 void add(Layer& layer, std::size_t pixel, glm::vec3 value) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -113,23 +92,45 @@ bool needs_sums(const Frame& frame) {
     return !frame.options.sampler.has_value();
 }
 
-/// The sum where it is right, samples elsewhere. The sum for lobes has no coarser form.
+LampLight shade_by_samples(
+    const Frame& frame, const ShadeQuery& query, const Lamp& lamp, std::size_t k, Block& block) {
+    model::SamplerOptions sampler;
+    sampler.sampler = frame.options.sampler.value_or(model::Sampler::Systematic);
+    sampler.sequence = frame.options.sequence.value_or(model::default_sequence(sampler.sampler));
+    return shade_sampled(lamp, frame.tracer, query, sampler,
+                         needs_sums(frame) ? &block.sums : nullptr, k, block.scratch);
+}
+
+LampLight shade_glossy(const Frame& frame,
+                       const ShadeQuery& query,
+                       int q,
+                       const Lamp& lamp,
+                       std::size_t k,
+                       Block& block) {
+    // The sum for lobes has no coarser form.
+    if (needs_sums(frame) && q == 0 && resolves_lobe(lamp, query))
+        return shade_reflected(lamp, frame.tracer, query, block.scratch);
+    return shade_by_samples(frame, query, lamp, k, block);
+}
+
+/// The sum where it is right, samples elsewhere.
 LampLight shade(const Frame& frame,
                 const ShadeQuery& query,
                 int q,
                 const Lamp& lamp,
                 std::size_t k,
                 Block& block) {
-    const bool is_glossy = shared::brdf_is_glossy(query.brdf);
-    if (needs_sums(frame) && !is_glossy)
-        return shade_diffuse(lamp, frame.tracer, query, block.sums, k, block.scratch);
-    if (needs_sums(frame) && q == 0 && resolves_lobe(lamp, query))
-        return shade_reflected(lamp, frame.tracer, query, block.scratch);
-    model::SamplerOptions sampler;
-    sampler.sampler = frame.options.sampler.value_or(model::Sampler::Systematic);
-    sampler.sequence = frame.options.sequence.value_or(model::default_sequence(sampler.sampler));
-    return shade_sampled(lamp, frame.tracer, query, sampler,
-                         needs_sums(frame) ? &block.sums : nullptr, k, block.scratch);
+    if (!query.has_shadows && !faces(lamp, query.hit))
+        return {};
+    if (!shared::brdf_is_glossy(query.brdf))
+        return needs_sums(frame)
+                   ? shade_diffuse(lamp, frame.tracer, query, block.sums, k, block.scratch)
+                   : shade_by_samples(frame, query, lamp, k, block);
+    Lap lap;
+    const double rays_before_s = block.scratch.shadow_rays_s;
+    const LampLight light = shade_glossy(frame, query, q, lamp, k, block);
+    block.scratch.gloss_s += lap.time_s() - (block.scratch.shadow_rays_s - rays_before_s);
+    return light;
 }
 
 /// Adds one lamp's light to the layers, from sums that are ready.
@@ -156,7 +157,8 @@ void shade_block(
                                glm::uvec2(sample.pixel),
                                first_set,
                                frame.options.seed,
-                               frame.options.shift};
+                               frame.options.shift,
+                               frame.plan.lamps[lamp].has_shadows};
         const LampLight light = shade(frame, query, pass.q, frame.lamps.lamps[lamp], k, block);
         add(layers[kRadiance], sample.index, light.radiance * share);
         add(layers[kIrradiance], sample.index, light.irradiance * share);
@@ -179,25 +181,22 @@ void render_block(const Frame& frame,
                   Block& block,
                   TileReport& report) {
     for (int stratum = 0; stratum < frame.strata * frame.strata; ++stratum) {
-        double at_s = now_s();
-        const auto spent = [&at_s](double& total_s) {
-            const double before_s = at_s;
-            at_s = now_s();
-            total_s += at_s - before_s;
-        };
+        Lap lap;
         trace_camera(frame, pass, first, last, stratum, block);
         report.camera_rays += static_cast<std::uint64_t>((last.x - first.x) * (last.y - first.y));
-        spent(report.camera_s);
+        report.camera_s += lap.time_s();
         if (block.hits.empty())
             continue;
         for (std::size_t lamp = 0; lamp < frame.lamps.lamps.size(); ++lamp) {
+            if (!frame.plan.lamps[lamp].is_lit)
+                continue;
             if (needs_sums(frame)) {
                 sum_light(frame.lamps.lamps[lamp], pass.q, block.hits, block.sums);
                 report.multiply_adds += block.sums.multiply_adds;
-                spent(report.sums_s);
+                report.sums_s += lap.time_s();
             }
             shade_block(frame, pass, stratum, lamp, block);
-            spent(report.visibility_s);
+            report.shading_s += lap.time_s();
         }
     }
 }
@@ -219,6 +218,8 @@ void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileRep
             render_block(frame, pass, {x, y}, glm::min(glm::ivec2(x, y) + kBlockPx, last), block,
                          report);
     report.shadow_rays += block.scratch.shadow_rays;
+    report.shadow_rays_s += block.scratch.shadow_rays_s;
+    report.gloss_s += block.scratch.gloss_s;
 }
 
 float root_of_variance(const RenderOptions& options, const TileWeight& weight) {

@@ -2,10 +2,11 @@
 /// A picture's tiles: independent of each other, each the work of one thread at a time.
 #pragma once
 
-#include "render/cpu/lamps.h"
-#include "render/cpu/render.h"
 #include "render/cpu/shade.h"
 #include "render/cpu/tracer.h"
+#include "render/film.h"
+#include "render/lamps.h"
+#include "render/report.h"
 
 #include <glm/glm.hpp>
 
@@ -25,17 +26,6 @@ struct Pass {
     float weight = 1.0F;  // among passes
 };
 
-/// Layers in their order; behind the lamps' layers those that not every picture has.
-enum LayerIndex : std::size_t {
-    kRadiance,
-    kIrradiance,
-    kAlbedo,
-    kDepth,
-    kNormal,
-    kSigma,
-    kFirstLamp
-};
-
 /// What all tiles share. Between passes the picture holds sums: radiance and what is linear in it
 /// times the passes' weights, sigma's layer variances times their squares.
 struct Frame {
@@ -44,8 +34,9 @@ struct Frame {
     const Camera& camera;
     const Lamps& lamps;
     const Tracer& tracer;
+    const Plan& plan;
     Picture& picture;
-    std::vector<shared::Brdf> brdfs;  // [material]
+    std::vector<shared::Brdf> brdfs;  // [material], of what the plan has of it
     int strata = 1;                   // a pixel's side
     std::optional<std::size_t> bias_layer, measured_layer;
 
@@ -53,7 +44,9 @@ struct Frame {
 };
 
 struct TileReport {
-    double camera_s = 0, sums_s = 0, visibility_s = 0;
+    double camera_s = 0, sums_s = 0;
+    double shading_s = 0;  // all that follows, of which:
+    double shadow_rays_s = 0, gloss_s = 0;
     std::uint64_t camera_rays = 0, shadow_rays = 0, multiply_adds = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,7 @@ struct Tracer::Embree {
     RTCDevice device = nullptr;
     RTCScene top = nullptr;
     std::vector<RTCScene> meshes;
+    std::atomic<std::int64_t> bytes{0};
 
     Embree() = default;
     Embree(const Embree&) = delete;
@@ -92,6 +94,12 @@ RTCRay make_ray(glm::vec3 origin, glm::vec3 direction, float length, std::uint32
     return ray;
 }
 
+/// Embree tells of memory taken (positive) and given back, from any thread; it may go on.
+bool count_bytes(void* total, ssize_t bytes, bool) {
+    *static_cast<std::atomic<std::int64_t>*>(total) += bytes;
+    return true;
+}
+
 double largest(glm::dvec3 v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -102,6 +110,7 @@ Tracer::Tracer(const Scene& scene, const std::vector<std::uint32_t>& masks, int 
     : scene_(scene), embree_(std::make_unique<Embree>()) {
     embree_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
     embree_->check();
+    rtcSetDeviceMemoryMonitorFunction(embree_->device, count_bytes, &embree_->bytes);
     if (rtcGetDeviceProperty(embree_->device, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) == 0)
         throw Error{"the ray tracer cannot leave meshes out", "Embree", "a build with ray masks",
                     "none"};
@@ -122,6 +131,10 @@ Tracer::Tracer(const Scene& scene, const std::vector<std::uint32_t>& masks, int 
 }
 
 Tracer::~Tracer() = default;
+
+double Tracer::bytes() const {
+    return static_cast<double>(embree_->bytes.load());
+}
 
 std::optional<Hit> Tracer::trace(glm::dvec3 origin_world_m, glm::dvec3 direction_world) const {
     RTCRayHit query{};

@@ -38,6 +38,8 @@ USAGE = [
     ([*RENDER, "--time-ms", "-1"], ["--time-ms", "'-1'"]),
     ([*RENDER, "--tonemap", "0"], ["--tonemap", "filmic, papers", "'0'"]),
     ([*RENDER, "--device", "gpu"], ["--device", "cpu", "'gpu'"]),
+    ([*RENDER, "--effect", "shadow=off"], ["--effect", "color, shadows, gloss, tone-mapping", "'shadow=off'"]),
+    ([*RENDER, "--effect", "tone-mapping=off", "--png", "x.png"], ["--png", "tone-mapping=off"]),
     (["render", "scene.gltf", "-o", "picture.png"], ["NAME.exr", "'picture.png'"]),
     ([*PROBE, "--sampler", "both"], ["--sampler", "aperture", "'both'"]),
     ([*PROBE, "--sampler", "cells", "--q", "8"], ["--q", "but sum", "8"]),

@@ -63,7 +63,7 @@ double cost_of(const Scene& scene) {
     render::RenderOptions options;
     options.size_px = {24, 18};
     options.samples = 8;
-    const render::RenderReport report = render::render(scene, options).report;
+    const render::RenderReport report = render::render_cpu(scene, options).report;
     return report.multiply_adds + static_cast<double>(report.shadow_rays + report.camera_rays);
 }
 

@@ -51,7 +51,7 @@ Calibration calibrate(const Scene& scene, RenderOptions options, int seeds) {
     double count = 0;
     for (int seed = 0; seed < seeds; ++seed) {
         options.seed = static_cast<std::uint32_t>(seed);
-        const Rendered rendered = render(scene, options);
+        const Rendered rendered = render_cpu(scene, options);
         const Layer& radiance = layer(rendered.picture, "");
         y.emplace_back();
         for (std::size_t i = 0; i < radiance.values.size(); i += 3)
@@ -109,15 +109,15 @@ TEST(RenderError, PassesEndAtTheErrorOrAtTheLimit) {
     double shadow_rays = 0;
     for (const double error_rel : {0.1, 0.03, 0.01}) {
         options.error_rel = error_rel;
-        const RenderReport report = render(scene, options).report;
+        const RenderReport report = render_cpu(scene, options).report;
         EXPECT_TRUE(report.is_error_reached);
         EXPECT_LE(report.sampling.error_rel(), error_rel);
         EXPECT_GE(static_cast<double>(report.shadow_rays), shadow_rays);
         shadow_rays = static_cast<double>(report.shadow_rays);
     }
-    EXPECT_GT(render(scene, options).report.passes, 1);
+    EXPECT_GT(render_cpu(scene, options).report.passes, 1);
     options.samples = 40;
-    const RenderReport limited = render(scene, options).report;
+    const RenderReport limited = render_cpu(scene, options).report;
     EXPECT_FALSE(limited.is_error_reached);
     EXPECT_EQ(limited.samples, 40.0);
     EXPECT_GT(limited.sampling.error_rel(), 0.01);
@@ -141,14 +141,14 @@ struct FakeClock {
 TEST(RenderError, PassesEndWithTheTime) {
     const Scene scene = penumbra_scene();
     RenderOptions options = small(48);
-    const Rendered whole = render(scene, options);
+    const Rendered whole = render_cpu(scene, options);
     options.samples = 128;  // to this clock samples cost nothing
     double samples = 0;
     for (const double step_s : {10.0, 1e-2, 1e-3, 1e-4}) {
         FakeClock clock;
         clock.step_s = step_s;
         options.time_s = 1.0;
-        const Rendered rendered = render(scene, options, clock.hooks());
+        const Rendered rendered = render_cpu(scene, options, clock.hooks());
         const RenderReport& report = rendered.report;
         EXPECT_GE(report.passes, 1);
         EXPECT_GE(report.samples, samples) << step_s;
@@ -170,7 +170,7 @@ TEST(RenderError, TooLittleTimeCoarsensTheSumAndBoundsItsBias) {
     LightField lamp = one_window_lamp(0.2, 1.0F);
     lamp.slabs[0].texels = {64, 64};
     lamp.slabs[0].coeffs.resize(std::size_t{64} * 64);
-    for (std::size_t i = 0; i < 64 * 64; ++i)
+    for (std::size_t i = 0; i < lamp.slabs[0].coeffs.size(); ++i)
         lamp.slabs[0].coeffs[i] = static_cast<float>((i * 37) % 11);
     scene.luminaires = {write_lamp(lamp, "fine", pose({0, 0, 2}, kDown))};
     // Every reading goes on by 0.7 of the step before: coarser trials seem faster, never fast
@@ -185,10 +185,10 @@ TEST(RenderError, TooLittleTimeCoarsensTheSumAndBoundsItsBias) {
     RenderOptions options = small(24);
     options.samples = 16;
     options.time_s = 1.0;
-    const Rendered hurried = render(scene, options, hooks);
+    const Rendered hurried = render_cpu(scene, options, hooks);
     EXPECT_EQ(hurried.report.q, 2);
     options.time_s = 0.0;
-    const Rendered exact = render(scene, options);
+    const Rendered exact = render_cpu(scene, options);
     EXPECT_EQ(exact.report.q, 0);
     const Layer &bound = layer(hurried.picture, "bias_bound"), &coarse = layer(hurried.picture, ""),
                 &fine = layer(exact.picture, "");
@@ -239,7 +239,7 @@ TEST(RenderError, MeasuredSigmaIsTheFilesRelativeSigmaTimesDiffuseRadiance) {
         RenderOptions options = small(5);
         options.samples_per_pixel = 4;
         options.sigma_measured = true;
-        const Rendered rendered = render(transformed(scene, matrix), options);
+        const Rendered rendered = render_cpu(transformed(scene, matrix), options);
         EXPECT_TRUE(rendered.report.has_sigma_measured);
         for (std::size_t i = 0; i < 25; ++i) {
             const float radiance = layer(rendered.picture, "").values[3 * i + 1];
@@ -257,7 +257,7 @@ TEST(RenderError, MeasuredSigmaIsLeftOutWhereNothingIsKnown) {
     RenderOptions options = small(4);
     const auto layers = [&] {
         scene.luminaires = {write_lamp(lamp, "perhaps", pose({0, 0, 2}, kDown))};
-        return render(scene, options).picture.layers.size();
+        return render_cpu(scene, options).picture.layers.size();
     };
     const std::size_t without = layers();
     options.sigma_measured = true;

@@ -39,7 +39,7 @@ TEST(Light, PointLikeLampGivesIntensityTimesCosineOverSquaredDistance) {
         scene.luminaires = {write_lamp(one_window_lamp(kAperture, kCoefficient, weighting), "point",
                                        pose({lamp_xy.x, lamp_xy.y, kHeight}, kDown))};
         const RenderOptions options = small(8);
-        const Rendered rendered = render(scene, options);
+        const Rendered rendered = render_cpu(scene, options);
         const Layer& irradiance = layer(rendered.picture, "irradiance");
         const Layer& radiance = layer(rendered.picture, "");
         for (int y = 0; y < 8; ++y)
@@ -67,7 +67,7 @@ TEST(Light, DepthIsAlongTheAxisAndNormalsFaceTheViewer) {
     Scene scene = floor_scene();
     std::swap(scene.meshes[0].triangles[0].x,
               scene.meshes[0].triangles[0].y);  // turned away by winding
-    const Rendered rendered = render(scene, small());
+    const Rendered rendered = render_cpu(scene, small());
     for (const float depth : layer(rendered.picture, "depth").values)
         EXPECT_NEAR(depth, 4.0, 1e-6);
     EXPECT_NEAR(layer(rendered.picture, "normal").values[2], 1.0, 1e-7);
@@ -78,7 +78,7 @@ TEST(Light, DepthIsAlongTheAxisAndNormalsFaceTheViewer) {
 TEST(Light, LampsThatAreOffCostNothingAndDimScalesLight) {
     Scene scene = floor_scene();
     scene.luminaires = {write_lamp(one_window_lamp(0.05, 1.0F), "lamp", pose({0, 0, 2}, kDown))};
-    const Rendered full = render(scene, small());
+    const Rendered full = render_cpu(scene, small());
     scene.luminaires[0].dim = 0.25;
     LuminaireInstance off = scene.luminaires[0];
     off.path = "no such file";
@@ -88,7 +88,7 @@ TEST(Light, LampsThatAreOffCostNothingAndDimScalesLight) {
     dark.dim = 0.0;
     scene.luminaires.push_back(off);
     scene.luminaires.push_back(dark);
-    const Rendered dimmed = render(scene, small());
+    const Rendered dimmed = render_cpu(scene, small());
     EXPECT_EQ(dimmed.report.shadow_rays, full.report.shadow_rays);
     EXPECT_EQ(dimmed.picture.layers.size(), full.picture.layers.size());
     EXPECT_FLOAT_EQ(layer(dimmed.picture, "").values[0], 0.25F * layer(full.picture, "").values[0]);
@@ -100,7 +100,7 @@ TEST(Light, NoLightBehindTheLampOrThroughASurface) {
     const LightField lamp = one_window_lamp(0.05, 1.0F);
     for (const glm::dmat4& where : {pose({0, 0, 2}, -kDown), pose({0, 0, -2}, -kDown)}) {
         scene.luminaires = {write_lamp(lamp, "lamp", where)};
-        const Rendered rendered = render(scene, small());
+        const Rendered rendered = render_cpu(scene, small());
         for (const float value : layer(rendered.picture, "irradiance").values)
             EXPECT_EQ(value, 0.0F);
         EXPECT_EQ(rendered.report.shadow_rays, 0U);
@@ -118,12 +118,12 @@ TEST(Light, LightOfSlabsAndLampsAdds) {
     Scene scene = floor_scene();
     const glm::dmat4 place = pose({0, 0, 2}, kDown);
     scene.luminaires = {write_lamp(both, "both", place)};
-    const Rendered together = render(scene, small());
+    const Rendered together = render_cpu(scene, small());
     second.slabs[0].luminaire_from_slab = {};
     both.slabs.pop_back();
     scene.luminaires = {write_lamp(both, "first", place),
                         write_lamp(second, "second", glm::translate(place, {0.5, 0, 0.1}))};
-    const Rendered apart = render(scene, small());
+    const Rendered apart = render_cpu(scene, small());
     EXPECT_LT(difference(layer(together.picture, ""), layer(apart.picture, "")), 2e-6);
     const Layer& sum = layer(apart.picture, "");
     for (std::size_t i = 0; i < sum.values.size(); ++i)
@@ -139,7 +139,7 @@ TEST(Light, GlossOfAPointLikeLampIsPhongs) {
     scene.luminaires = {
         write_lamp(one_window_lamp(1e-4, 1e9F), "point", pose({0.4, 0.2, 2}, kDown))};
     const RenderOptions options = small(9);
-    const Rendered rendered = render(scene, options);
+    const Rendered rendered = render_cpu(scene, options);
     const shared::Brdf r = brdf(scene.materials[0]);
     const double e = 0.01 * 1e9 * 1e-8 / (2.1 * 2.1);
     for (int x = 0; x < 9; ++x) {
@@ -190,9 +190,9 @@ TEST(Light, GlossBySumAndBySamplesAgree) {
     scene.luminaires = {write_lamp(lamp, "fine", pose({0.3, 0.2, 0.5}, {-0.3, -0.1, -1}))};
     add_blocker(scene, "post", {0.1, 0.1, 0.25}, {0.1, 0.2});
     RenderOptions options = small(60);
-    const Total summed = total(render(scene, options));
+    const Total summed = total(render_cpu(scene, options));
     options.sampler = model::Sampler::Systematic;
-    const Total sampled = total(render(scene, options));
+    const Total sampled = total(render_cpu(scene, options));
     ASSERT_GT(summed.variance, 0.0);
     ASSERT_GT(sampled.variance, summed.variance);
     constexpr double kGlossySum = 1e-3;  // formats/model/glossy_sum.h

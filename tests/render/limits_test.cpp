@@ -18,7 +18,7 @@ using test::small;
 TEST(Limits, OptionsOutOfRangeAreRefused) {
     const auto message = [](const Scene& scene, const RenderOptions& options) -> std::string {
         try {
-            render(scene, options);
+            render_cpu(scene, options);
         } catch (const Error& error) {
             return error.what();
         }

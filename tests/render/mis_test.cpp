@@ -173,9 +173,9 @@ Lamps load(const Case& one, int index) {
     Scene scene;
     scene.luminaires = {
         test::write_lamp(one.lightfield, "mis" + std::to_string(index), glm::dmat4(1.0))};
-    LampNeeds needs;
-    needs.tables = true;
-    return load_lamps(scene, needs);
+    LampParts parts;
+    parts.tables = true;
+    return load_lamps(scene, parts);
 }
 
 /// What is held fixed while sets are drawn.

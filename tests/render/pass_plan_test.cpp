@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/cpu/pass_plan.h"
 
-#include "render/cpu/render.h"
+#include "render/options.h"
 
 #include <gtest/gtest.h>
 

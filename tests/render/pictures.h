@@ -2,7 +2,7 @@
 /// Options of small pictures, and how pictures are compared.
 #pragma once
 
-#include "render/cpu/render.h"
+#include "render/options.h"
 
 #include <gtest/gtest.h>
 

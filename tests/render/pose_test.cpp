@@ -37,13 +37,13 @@ double share_beyond(const Layer& a, const Layer& b, double tolerance) {
 // Proves: moving, turning or scaling the whole scene, lamps' geometry included, leaves the picture
 // as it is (radiance does not change with scale).
 TEST(Pose, MovingTurningScalingTheSceneLeavesThePicture) {
-    const Rendered plain = render(uneven_scene(), small(48));
+    const Rendered plain = render_cpu(uneven_scene(), small(48));
     const glm::dmat4 one(1.0);
     for (const glm::dmat4& matrix :
          {glm::translate(one, {3, -2, 1}),
           glm::rotate(one, 1.1, glm::normalize(glm::dvec3(1, 2, -1))),
           glm::scale(one, glm::dvec3(1e3)), glm::scale(one, glm::dvec3(1e-3))}) {
-        const Rendered moved = render(transformed(uneven_scene(), matrix), small(48));
+        const Rendered moved = render_cpu(transformed(uneven_scene(), matrix), small(48));
         EXPECT_LT(share_beyond(layer(plain.picture, ""), layer(moved.picture, ""), kPoseTolerance),
                   kFlippedPixels);
     }
@@ -56,10 +56,10 @@ TEST(Pose, MirroredSceneGivesTheMirroredPicture) {
     scene.instances.resize(1);
     scene.luminaires[0].excludes.clear();
     constexpr int kSide = 32;
-    const Rendered plain = render(scene, small(kSide));
+    const Rendered plain = render_cpu(scene, small(kSide));
     Scene mirrored = transformed(scene, glm::scale(glm::dmat4(1.0), {-1, 1, 1}));
     mirrored.cameras = scene.cameras;  // on the mirror plane
-    Rendered other = render(mirrored, small(kSide));
+    Rendered other = render_cpu(mirrored, small(kSide));
     Layer flipped = layer(other.picture, "");
     for (std::size_t y = 0; y < kSide; ++y)
         for (std::size_t x = 0; x < kSide; ++x)

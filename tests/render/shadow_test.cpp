@@ -30,7 +30,7 @@ TEST(Shadow, BlockerShadowsTotally) {
     scene.luminaires = {write_lamp(one_window_lamp(0.05, 1.0F), "lamp", pose({0, 0, 2}, kDown))};
     add_blocker(scene, "blocker", {0, 0, 1.9}, {4, 4});
     scene.cameras = {test::camera_at({0, -3, 1}, {0, 3, -1}, {0, 0, 1}, 0.5)};  // under the blocker
-    const Rendered rendered = render(scene, small());
+    const Rendered rendered = render_cpu(scene, small());
     for (const char* name : {"", "irradiance", "sigma"})
         for (const float value : layer(rendered.picture, name).values)
             EXPECT_EQ(value, 0.0F);
@@ -46,7 +46,7 @@ TEST(Shadow, HalfCoveredApertureGivesHalf) {
     constexpr int kSeeds = 200;
     for (int seed = 0; seed < kSeeds; ++seed) {
         options.seed = static_cast<std::uint32_t>(seed);
-        const Rendered rendered = render(half_covered(), options);
+        const Rendered rendered = render_cpu(half_covered(), options);
         const double ratio = layer(rendered.picture, "irradiance").values[0] / unshadowed;
         sum += ratio;
         squares += (ratio - 0.5) * (ratio - 0.5);
@@ -75,7 +75,7 @@ TEST(Shadow, RatioEstimatorBiasIsBelowOnePercentAtEightSamples) {
             RenderOptions options = small(32);
             options.samples = samples;
             options.seed = static_cast<std::uint32_t>(seed);
-            const Rendered rendered = render(scene, options);
+            const Rendered rendered = render_cpu(scene, options);
             for (const float value : layer(rendered.picture, "irradiance").values)
                 sum += value;
         }
@@ -92,13 +92,13 @@ TEST(Shadow, RatioEstimatorBiasIsBelowOnePercentAtEightSamples) {
 TEST(Shadow, ExcludedMeshCastsNoShadowForItsLampAlone) {
     Scene scene = floor_scene();
     scene.luminaires = {write_lamp(one_window_lamp(0.05, 1.0F), "a", pose({0, 0, 2}, kDown))};
-    const Rendered open = render(scene, small());
+    const Rendered open = render_cpu(scene, small());
     add_blocker(scene, "lens", {0, 0, 1.99}, {3, 3});
     scene.cameras = {test::camera_at({0, -3, 1}, {0, 3, -1}, {0, 0, 1}, 0.3)};
     scene.luminaires.push_back(scene.luminaires[0]);
     for (const char* name : {"lens", "lens mesh"}) {
         scene.luminaires[1].excludes = {name};
-        const Rendered rendered = render(scene, small());
+        const Rendered rendered = render_cpu(scene, small());
         EXPECT_EQ(layer(rendered.picture, "lamp.a").values[0], 0.0F);
         EXPECT_NEAR(layer(rendered.picture, "lamp.a_2").values[std::size_t{3} * 136],
                     layer(open.picture, "lamp.a").values[std::size_t{3} * 136],
@@ -117,7 +117,7 @@ TEST(Shadow, HiddenSlabTakesItsShareOfTheLight) {
     Scene scene = floor_scene();
     scene.luminaires = {write_lamp(both, "both", pose({0, 0, 2}, kDown))};
     add_blocker(scene, "cap", {0, 0, 1.99}, {0.4, 0.4});
-    const Rendered rendered = render(scene, small());
+    const Rendered rendered = render_cpu(scene, small());
     // E of a slab is delta^2 C a^2 / (height of U)^2 everywhere on the floor; the second slab's U
     // is 2.0 m high.
     const double expected = kWindowDelta * kWindowDelta * 3.0 * 0.05 * 0.05 / (2.0 * 2.0);

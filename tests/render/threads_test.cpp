@@ -51,14 +51,15 @@ TEST(Threads, TheirNumberDoesNotChangeABit) {
     for (RenderOptions& options : all) {
         SCOPED_TRACE(options.sampler ? model::name_of(*options.sampler) : "sum");
         options.threads = 1;
-        const Rendered one = render(scene, options);
+        const Rendered one = render_cpu(scene, options);
         EXPECT_GT(one.report.sampling.mean_rel, 0.0);
         for (const int threads : {2, 0}) {
             options.threads = threads;
-            expect_same_bits(one, render(scene, options));
+            expect_same_bits(one, render_cpu(scene, options));
         }
         options.seed = 2;
-        EXPECT_NE(layer(one.picture, "").values, layer(render(scene, options).picture, "").values);
+        EXPECT_NE(layer(one.picture, "").values,
+                  layer(render_cpu(scene, options).picture, "").values);
     }
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cpu/lamps.h"
+#include "render/lamps.h"
 
 #include "formats/files/error.h"
 #include "formats/files/luminaire.h"
 #include "formats/model/tables.h"
+#include "formats/shared/tonemap.glsl.h"
+#include "render/beam.h"
 
 #include <fmt/format.h>
 
@@ -28,25 +30,55 @@ Luminaire read_with_tables(const std::string& path) {
     return {read_lightfield(path), {}};
 }
 
-std::shared_ptr<const LoadedLightField> load(const std::string& path, const LampNeeds& needs) {
+/// Luminance of three channels, or one channel as three equal ones.
+void change_channels(Slab& slab, int channels) {
+    if (slab.channels == channels)
+        return;
+    const std::size_t of_channel = slab.coeffs.size() / static_cast<std::size_t>(slab.channels);
+    std::vector<float> y(slab.coeffs.begin(),
+                         slab.coeffs.begin() + static_cast<std::ptrdiff_t>(of_channel));
+    if (slab.channels == 3)
+        for (std::size_t i = 0; i < of_channel; ++i)
+            y[i] = shared::luminance709(
+                {slab.coeffs[i], slab.coeffs[of_channel + i], slab.coeffs[2 * of_channel + i]});
+    slab.coeffs = y;
+    for (int c = 1; c < channels; ++c)
+        slab.coeffs.insert(slab.coeffs.end(), y.begin(), y.end());
+    slab.channels = channels;
+}
+
+/// Files' tables are of the channels that they hold.
+void change_channels(Luminaire& luminaire, int channels) {
+    for (Slab& slab : luminaire.lightfield.slabs) {
+        if (slab.channels != channels)
+            luminaire.tables.clear();
+        change_channels(slab, channels);
+    }
+}
+
+std::shared_ptr<const LoadedLightField> load(const std::string& path, const LampParts& parts) {
     Luminaire luminaire =
-        needs.tables ? read_with_tables(path) : Luminaire{read_lightfield(path), {}};
-    if (needs.tables && luminaire.tables.empty())
+        parts.tables ? read_with_tables(path) : Luminaire{read_lightfield(path), {}};
+    auto loaded = std::make_shared<LoadedLightField>();
+    if (parts.measured && has_sigma(luminaire.lightfield))
+        loaded->measured = luminaire.lightfield;
+    for (const Slab& slab : luminaire.lightfield.slabs)
+        loaded->file_channels = std::max(loaded->file_channels, slab.channels);
+    if (parts.channels > 0)
+        change_channels(luminaire, parts.channels);
+    if (parts.tables && luminaire.tables.empty())
         for (const Slab& slab : luminaire.lightfield.slabs)
             luminaire.tables.push_back(model::build_tables(slab));
-    auto loaded = std::make_shared<LoadedLightField>();
-    if (needs.measured && has_sigma(luminaire.lightfield))
-        loaded->measured = luminaire.lightfield;
     loaded->quantity = luminaire.lightfield.quantity;
     for (std::size_t s = 0; s < luminaire.lightfield.slabs.size(); ++s) {
         Slab& slab = luminaire.lightfield.slabs[s];
         slab.sigma.clear();
-        if (needs.tables) {
-            if (needs.mips)
+        if (parts.tables) {
+            if (parts.mips)
                 loaded->mips.push_back(model::prepare_mips(slab));
             loaded->sampling.push_back(
                 model::prepare_sampling(std::move(slab), std::move(luminaire.tables[s])));
-        } else if (needs.mips) {
+        } else if (parts.mips) {
             loaded->mips.push_back(model::prepare_mips(std::move(slab)));
         } else {
             loaded->prepared.push_back(model::prepare(std::move(slab)));
@@ -75,6 +107,10 @@ PlacedSlab place(const LoadedLightField& file, std::size_t s, const LuminaireIns
     placed.world_from_slab = luminaire.world_from_luminaire * luminaire_from_slab;
     placed.slab_from_world = glm::inverse(placed.world_from_slab);
     placed.slab_from_world_rotation = rotation_from_world(placed.world_from_slab, luminaire);
+    const std::array<glm::dvec3, 4> corners = u_corners_m(beam_of(placed.prepared->slab));
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        placed.u_corners_world_m[c] =
+            glm::dvec3(placed.world_from_slab * glm::dvec4(corners[c], 1.0));
     return placed;
 }
 
@@ -128,9 +164,54 @@ class MaskBits {
     std::vector<std::uint32_t> masks_;
 };
 
+double bytes(const std::vector<float>& values) {
+    return static_cast<double>(values.size() * sizeof(float));
+}
+
+double coefficient_bytes(const model::PreparedSlab& prepared) {
+    return bytes(prepared.slab.coeffs) + bytes(prepared.tail);
+}
+
+double table_bytes(const SlabTables& tables) {
+    double sum = bytes(tables.sat_hi) + bytes(tables.sat_lo) + bytes(tables.marginal_cdf) +
+                 bytes(tables.conditional_cdf);
+    for (const MipLevel& level : tables.mips)
+        sum += bytes(level.coeffs);
+    return sum;
+}
+
+std::set<const LoadedLightField*> files_of(const Lamps& lamps) {
+    std::set<const LoadedLightField*> files;
+    for (const Lamp& lamp : lamps.lamps)
+        files.insert(lamp.file.get());
+    return files;
+}
+
 }  // namespace
 
-Lamps load_lamps(const Scene& scene, const LampNeeds& needs) {
+double coefficient_bytes(const Lamps& lamps) {
+    double sum = 0.0;
+    for (const LoadedLightField* file : files_of(lamps)) {
+        for (const model::PreparedSlab& prepared : file->prepared)
+            sum += coefficient_bytes(prepared);
+        for (const model::PreparedMips& mips : file->mips)
+            for (const model::PreparedSlab& level : mips.levels)
+                sum += coefficient_bytes(level);
+        for (const model::SamplingSlab& sampling : file->sampling)
+            sum += coefficient_bytes(sampling.prepared);
+    }
+    return sum;
+}
+
+double table_bytes(const Lamps& lamps) {
+    double sum = 0.0;
+    for (const LoadedLightField* file : files_of(lamps))
+        for (const model::SamplingSlab& sampling : file->sampling)
+            sum += table_bytes(sampling.tables);
+    return sum;
+}
+
+Lamps load_lamps(const Scene& scene, const LampParts& parts) {
     Lamps result;
     MaskBits bits(scene);
     std::map<std::string, std::shared_ptr<const LoadedLightField>> files;
@@ -140,7 +221,7 @@ Lamps load_lamps(const Scene& scene, const LampNeeds& needs) {
             continue;
         std::shared_ptr<const LoadedLightField>& file = files[luminaire.path];
         if (!file)
-            file = load(luminaire.path, needs);
+            file = load(luminaire.path, parts);
         if (!result.lamps.empty() && file->quantity != result.quantity)
             throw Error{"cannot mix light in lumens and in watts", luminaire.path,
                         "the other luminaires' quantity", "another"};

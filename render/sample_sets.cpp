@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cpu/sample_sets.h"
+#include "render/sample_sets.h"
 
 #include "formats/shared/rng.glsl.h"
 
@@ -8,7 +8,7 @@
 namespace nearfield::render {
 namespace {
 
-double luminance(glm::dvec3 rgb) {
+double luminance_y(glm::dvec3 rgb) {
     return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
 }
 
@@ -32,7 +32,7 @@ double variance_y(std::span<const SetSums> sets, const Deviation& deviation) {
         return 0.0;
     double squares = 0.0;
     for (const SetSums& set : sets) {
-        const double y = luminance(deviation(set));
+        const double y = luminance_y(deviation(set));
         squares += y * y;
     }
     const auto count = static_cast<double>(sets.size());

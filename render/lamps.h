@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,11 +17,14 @@
 
 namespace nearfield::render {
 
-/// What a picture needs of its lamps' files beyond their coefficients.
-struct LampNeeds {
+/// What is read of lamps' files beyond their coefficients.
+struct LampParts {
     bool tables = false;    // samplers read them; built where a file is packed lean
     bool mips = false;      // sums on coarser images
     bool measured = false;  // a copy of each file's coefficients with their sigmas
+    /// 1: luminance alone; 3: three channels, equal ones where the file has one; 0: as the file
+    /// has.
+    int channels = 0;
 };
 
 /// A light field, read once however many lamps name it. Of the three only what was asked for:
@@ -31,6 +35,7 @@ struct LoadedLightField {
     std::vector<model::SamplingSlab> sampling;
     std::optional<LightField> measured;  // where asked for and the file knows its errors
     Quantity quantity = Quantity::Photometric;
+    int file_channels = 1;  // of the file's slabs, the most; the slabs' own are as asked for
 };
 
 /// A slab of a lamp in the scene. The scene's scale is in the matrices: in the slab's frame lengths
@@ -40,6 +45,7 @@ struct PlacedSlab {
     const model::PreparedMips* mips = nullptr;  // null unless asked for
     glm::dmat4 slab_from_world{1.0}, world_from_slab{1.0};
     glm::dmat3 slab_from_world_rotation{1.0};  // orthonormal; mirrors where the lamp is mirrored
+    std::array<glm::dvec3, 4> u_corners_world_m{};  // of the rectangle that light leaves U through
 };
 
 /// A lamp that is on.
@@ -61,6 +67,10 @@ struct Lamps {
 
 /// Opens the light fields of the lamps that are on with dim > 0; one that several lamps name is
 /// read once. Throws Error if one cannot be read or if photometric and radiometric ones are mixed.
-Lamps load_lamps(const Scene& scene, const LampNeeds& needs = {});
+Lamps load_lamps(const Scene& scene, const LampParts& parts = {});
+
+/// Memory of the coefficients, those of mips included, and of tables. A file counts once.
+double coefficient_bytes(const Lamps& lamps);
+double table_bytes(const Lamps& lamps);
 
 }  // namespace nearfield::render

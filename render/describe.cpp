@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formats/files/provenance.h"
 #include "formats/shared/tonemap.glsl.h"
-#include "render/cpu/render.h"
+#include "render/report.h"
 
 #include <fmt/format.h>
 
@@ -40,21 +41,44 @@ std::string goal(const RenderReport& report, const RenderOptions& options) {
     return text;
 }
 
-}  // namespace
+std::string named_device(const RenderReport& report) {
+    return report.device_reason.empty()
+               ? report.device
+               : fmt::format("{} ({})", report.device, report.device_reason);
+}
 
-std::string summary(const RenderReport& report, const RenderOptions& options, glm::ivec2 size_px) {
+std::string stages_on_cpu(const RenderReport& report, const RenderOptions& options) {
     const std::string plan =
         options.time_s > 0.0 ? fmt::format("trials {:.2f} s, ", report.plan_s) : "";
     return fmt::format(
-        "{} x {} px; {}; load {:.2f} s, build {:.2f} s, {}camera rays {:.2f} s, light sums {:.2f} "
-        "s, samples {:.2f} s; {:.3g} M camera rays, {:.3g} M shadow rays, {:.3g} G multiply-adds; "
-        "{}{}{}",
-        size_px.x, size_px.y, passes(report, options), report.load_s, report.build_s, plan,
-        report.camera_s, report.sums_s, report.visibility_s,
+        "{}camera rays {:.2f} s, light sums {:.2f} s, samples {:.2f} s; {:.3g} M camera rays, "
+        "{:.3g} M shadow rays, {:.3g} G multiply-adds",
+        plan, report.camera_s, report.sums_s, report.visibility_s,
         1e-6 * static_cast<double>(report.camera_rays),
-        1e-6 * static_cast<double>(report.shadow_rays), 1e-9 * report.multiply_adds,
+        1e-6 * static_cast<double>(report.shadow_rays), 1e-9 * report.multiply_adds);
+}
+
+std::string stages_on_card(const RenderReport& report) {
+    std::string text;
+    for (const PlannedPass& pass : report.plan.passes)
+        for (const PassReport& cost : report.costs)
+            if (cost.id == pass.id && cost.time_s > 0.0)
+                text +=
+                    fmt::format("{}{} {:.2f} s", text.empty() ? "" : ", ", pass.name, cost.time_s);
+    return text;
+}
+
+}  // namespace
+
+std::string summary(const RenderReport& report, const RenderOptions& options, glm::ivec2 size_px) {
+    return fmt::format(
+        "{} x {} px on {}; {}; load {:.2f} s, build {:.2f} s, {}; {}{}{}", size_px.x, size_px.y,
+        named_device(report), passes(report, options), report.load_s, report.build_s,
+        report.plan.device == Device::Gl ? stages_on_card(report) : stages_on_cpu(report, options),
         summary(report.sampling), goal(report, options),
-        report.has_sigma_measured ? "; with the layer sigma_measured" : "");
+        report.has_sigma_measured                   ? "; with the layer sigma_measured"
+        : has_pass(report.plan, PassId::ShadowMaps) ? "; without the error of shadow maps"
+                                                    : "");
 }
 
 std::string summary(const Noise& noise) {
@@ -98,6 +122,25 @@ Noise summarize_noise(const Layer& radiance, const Layer& sigma, const Layer* bi
     return noise;
 }
 
+namespace {
+
+/// Those that were forced: "shadows=off color=on".
+std::string forced_effects(const Effects& effects) {
+    std::string text;
+    const auto add = [&](const char* name, Switch wanted) {
+        if (wanted != Switch::Auto)
+            text += fmt::format("{}{}={}", text.empty() ? "" : " ", name,
+                                wanted == Switch::On ? "on" : "off");
+    };
+    add("color", effects.color);
+    add("shadows", effects.shadows);
+    add("gloss", effects.gloss);
+    add("tone-mapping", effects.tone_mapping);
+    return text;
+}
+
+}  // namespace
+
 Provenance describe(const Scene& scene, const RenderOptions& options, const RenderReport& report) {
     Provenance provenance;
     provenance.program = program_version();
@@ -113,6 +156,8 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
                           {"shift", model::name_of(options.shift)},
                           {"error", fmt::format("{}", options.error_rel)},
                           {"seed", fmt::format("{}", options.seed)},
+                          {"device", report.plan.device == Device::Gl ? "gl" : "cpu"},
+                          {"effect", forced_effects(options.effects)},
                           {"sigma-measured", options.sigma_measured ? "true" : "false"}};
     if (options.time_s > 0.0)
         provenance.options.emplace_back(

@@ -1,43 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cpu/limits.h"
+#include "render/options.h"
 
 #include "formats/files/error.h"
-#include "render/cpu/render.h"
+#include "render/limits.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <string>
 
 namespace nearfield::render {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
-
-double machine_has_bytes() {
-    std::ifstream file("/proc/meminfo");
-    for (std::string name; file >> name;) {
-        double kib = 0.0;
-        if (name == "MemAvailable:" && file >> kib)
-            return 1024.0 * kib;
-    }
-    return kUnknown;
-}
-
-/// The limit of address space less what is in use.
-double process_may_bytes() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-        return kUnknown;
-    double pages = 0.0;
-    std::ifstream("/proc/self/statm") >> pages;
-    constexpr double kPageBytes = 4096.0;
-    return std::max(static_cast<double>(limit.rlim_cur) - kPageBytes * pages, 0.0);
-}
 
 [[noreturn]] void refuse(const char* option, const std::string& expected, const std::string& got) {
     throw Error{"cannot render", option, expected, got};
@@ -50,11 +24,16 @@ void check_range(const char* option, int value, int least, int most, const char*
 
 }  // namespace
 
-double available_memory_bytes() {
-    return std::min(machine_has_bytes(), process_may_bytes());
+void check(const ShadowMapOptions& options) {
+    check_range("shadow maps", options.maps, 0, 1 << 16, " (one a cell)");
+    check_range("shadow map's side", options.map_px, 1, kMaxExtentPx);
+    const int taps = options.pcf_taps;
+    if (taps != 1 && taps != 4 && taps != 9 && taps != 16)
+        refuse("shadow taps", "1, 4, 9 or 16", fmt::format("{}", taps));
 }
 
 void check(const RenderOptions& options) {
+    check(options.shadow_maps);
     check_range("width", options.size_px.x, 1, kMaxExtentPx);
     check_range("height", options.size_px.y, 0, kMaxExtentPx, " (automatic)");
     const int side =

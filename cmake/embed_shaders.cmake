@@ -1,0 +1,11 @@
+# cmake -DROOT=... -DFILES="a;b" -DOUTPUT=x.cpp -P embed_shaders.cmake: the files' texts as C++ string literals.
+set(text "// Written by cmake/embed_shaders.cmake.\n#include \"render/gpu/shader_sources.h\"\n\n#include <array>\n\n")
+string(APPEND text "namespace nearfield::render::gpu {\n\nstd::span<const ShaderSource> shader_sources() {\n")
+list(LENGTH FILES count)
+string(APPEND text "    static constexpr std::array<ShaderSource, ${count}> kSources = {{\n")
+foreach(file IN LISTS FILES)
+    file(READ ${ROOT}/${file} source)
+    string(APPEND text "        {\"${file}\", R\"glsl(${source})glsl\"},\n")
+endforeach()
+string(APPEND text "    }};\n    return kSources;\n}\n\n}  // namespace nearfield::render::gpu\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/device.h"
+
+#include "formats/files/error.h"
+#include "render/cpu/render.h"
+#include "render/gpu/headless.h"
+#include "render/gpu/render.h"
+
+#include <optional>
+
+namespace nearfield::render {
+namespace {
+
+/// Why there is no OpenGL; nothing where there is.
+std::optional<std::string> missing_context() {
+    try {
+        const gpu::HeadlessContext context;
+        return std::nullopt;
+    } catch (const Error& error) {
+        return error.what_ + ": " + error.where;
+    }
+}
+
+Rendered render_auto(const Scene& scene, const RenderOptions& options, const RenderHooks& hooks) {
+    const std::optional<std::string> missing = missing_context();
+    Rendered rendered =
+        missing ? render_cpu(scene, options, hooks) : render_gl(scene, options, hooks);
+    rendered.report.device_reason =
+        missing ? *missing : std::string("there is an OpenGL 4.5 context");
+    return rendered;
+}
+
+}  // namespace
+
+Rendered render(const Scene& scene, const RenderOptions& options, const RenderHooks& hooks) {
+    switch (options.device) {
+        case Device::Auto:
+            return render_auto(scene, options, hooks);
+        case Device::Gl:
+            return render_gl(scene, options, hooks);
+        case Device::Cpu:
+            break;
+    }
+    return render_cpu(scene, options, hooks);
+}
+
+}  // namespace nearfield::render

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gpu/device.h"
+
+#include "formats/files/error.h"
+#include "render/gpu/objects.h"
+
+#include <epoxy/gl.h>
+
+#include <chrono>
+
+namespace nearfield::render::gpu {
+namespace {
+
+double clock_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+std::string text_of(GLenum name) {
+    const auto* text = reinterpret_cast<const char*>(glGetString(name));
+    return text == nullptr ? "" : text;
+}
+
+const char* name_of_error(GLenum error) {
+    switch (error) {
+        case GL_OUT_OF_MEMORY:
+            return "out of memory";
+        case GL_INVALID_ENUM:
+            return "invalid enum";
+        case GL_INVALID_VALUE:
+            return "invalid value";
+        case GL_INVALID_OPERATION:
+            return "invalid operation";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "incomplete framebuffer";
+        default:
+            return "unknown error";
+    }
+}
+
+// Errors alone: performance hints and notes are not for users.
+void GLAPIENTRY on_message(GLenum /*source*/,
+                           GLenum type,
+                           GLuint /*id*/,
+                           GLenum /*severity*/,
+                           GLsizei length,
+                           const GLchar* text,
+                           const void* message) {
+    auto* kept = static_cast<std::string*>(const_cast<void*>(message));
+    if (type == GL_DEBUG_TYPE_ERROR && kept->empty())
+        kept->assign(text, length < 0 ? std::char_traits<char>::length(text)
+                                      : static_cast<std::size_t>(length));
+}
+
+}  // namespace
+
+Device::Device() : renderer_(text_of(GL_RENDERER)) {
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px_);
+    glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &max_layers_);
+    has_timers_ = renderer_.find("llvmpipe") == std::string::npos &&
+                  renderer_.find("softpipe") == std::string::npos;
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_message, &message_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+}
+
+Device::~Device() {
+    glDebugMessageCallback(nullptr, nullptr);
+}
+
+void Device::check(const std::string& pass) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR && message_.empty())
+        return;
+    std::string said = std::exchange(message_, {});
+    while (!said.empty() && (said.back() == '\n' || said.back() == ' '))
+        said.pop_back();
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    if (error != GL_NO_ERROR)
+        said = name_of_error(error) + (said.empty() ? "" : ": " + said);
+    throw Error{"the graphics driver reports an error", "pass '" + pass + "' on " + renderer_,
+                "none", said};
+}
+
+void Device::run_pass(const std::string& name, const std::function<void()>& pass) {
+    const std::uint64_t bytes_before = allocated_bytes_;
+    double time_s = 0.0;
+    if (has_timers_) {
+        GLuint id = 0;
+        glCreateQueries(GL_TIME_ELAPSED, 1, &id);
+        const Query query(id);
+        glBeginQuery(GL_TIME_ELAPSED, id);
+        pass();
+        glEndQuery(GL_TIME_ELAPSED);
+        GLuint64 nanoseconds = 0;
+        glGetQueryObjectui64v(id, GL_QUERY_RESULT, &nanoseconds);
+        time_s = 1e-9 * static_cast<double>(nanoseconds);
+    } else {
+        const double start_s = clock_s();
+        pass();
+        glFinish();
+        time_s = clock_s() - start_s;
+    }
+    check(name);
+    costs_.push_back({name, time_s, allocated_bytes_ - bytes_before});
+}
+
+}  // namespace nearfield::render::gpu

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gpu/lamps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace nearfield::render::gpu {
+namespace {
+
+bool has_sums(const RenderOptions& options) {
+    return !options.sampler.has_value();
+}
+
+bool has_samples(const Plan& plan, const RenderOptions& options) {
+    return options.sampler.has_value() || plan.has_gloss;
+}
+
+model::Sampler sampler_of(const RenderOptions& options) {
+    return options.sampler.value_or(model::Sampler::Systematic);
+}
+
+SlabPlacement placement_of(const PlacedSlab& slab) {
+    return {slab.slab_from_world, slab.world_from_slab, slab.slab_from_world_rotation};
+}
+
+SumSlab upload_sums(Device& device, const PlacedSlab& slab, const Plan& plan, int q) {
+    const bool has_color = plan.color.is_in;
+    return q > 0 ? upload_sum_slab(device, *slab.mips, has_color, placement_of(slab))
+                 : upload_sum_slab(device, *slab.prepared, has_color, placement_of(slab));
+}
+
+SlabTextures upload_tables(Device& device,
+                           const PlacedSlab& slab,
+                           const SlabTables& tables,
+                           const Plan& plan,
+                           const RenderOptions& options) {
+    SlabNeeds needs;
+    needs.tables = true;
+    needs.cdfs = sampler_of(options) == model::Sampler::Pdis ||
+                 sampler_of(options) == model::Sampler::Precomputed;
+    needs.has_color = plan.color.is_in;
+    return upload_slab(device, slab.prepared->slab, slab.prepared->lit, &tables, needs,
+                       placement_of(slab));
+}
+
+FileOnCard upload_file(Device& device,
+                       const Lamp& lamp,
+                       const Plan& plan,
+                       const RenderOptions& options,
+                       LampsOnCard& on_card) {
+    FileOnCard file;
+    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
+        const std::uint64_t before = device.allocated_bytes();
+        if (has_sums(options))
+            file.sums.push_back(upload_sums(device, lamp.slabs[s], plan, options.q));
+        const std::uint64_t between = device.allocated_bytes();
+        if (has_samples(plan, options))
+            file.sampled.push_back(
+                upload_tables(device, lamp.slabs[s], lamp.file->sampling[s].tables, plan, options));
+        on_card.sum_bytes += between - before;
+        on_card.table_bytes += device.allocated_bytes() - between;
+    }
+    return file;
+}
+
+LightSamples make_samples(Device& device,
+                          const Plan& plan,
+                          const RenderOptions& options,
+                          bool has_shadows,
+                          bool has_tangents) {
+    SampleNeeds needs;
+    needs.sampler = sampler_of(options);
+    needs.sequence = options.sequence.value_or(model::default_sequence(needs.sampler));
+    needs.shift = options.shift;
+    needs.has_color = plan.color.is_in;
+    needs.has_shadows = has_shadows;
+    needs.has_gloss = plan.has_gloss;
+    needs.gloss_only = has_sums(options);
+    needs.has_tangents = has_tangents;
+    if (has_shadows)
+        needs.more_defines = shadow_defines(options.shadow_maps);
+    return make_light_samples(device, needs);
+}
+
+}  // namespace
+
+LampsOnCard upload_lamps(Device& device,
+                         const Lamps& lamps,
+                         const Plan& plan,
+                         const RenderOptions& options) {
+    LampsOnCard on_card;
+    for (std::size_t k = 0; k < lamps.lamps.size(); ++k) {
+        const Lamp& lamp = lamps.lamps[k];
+        if (plan.lamps[k].is_lit && !on_card.files.contains(lamp.file.get()))
+            on_card.files.emplace(lamp.file.get(),
+                                  upload_file(device, lamp, plan, options, on_card));
+    }
+    on_card.shadows.resize(lamps.lamps.size());
+    return on_card;
+}
+
+LightPasses make_light_passes(Device& device,
+                              const Plan& plan,
+                              const RenderOptions& options,
+                              bool has_tangents) {
+    LightPasses passes;
+    passes.sums.shadows = SumShadows::Shares;
+    passes.sums.more_defines = shadow_defines(options.shadow_maps);
+    const auto any_lit = [&](bool has_shadows) {
+        return std::any_of(plan.lamps.begin(), plan.lamps.end(), [&](const LampPlan& lamp) {
+            return lamp.is_lit && lamp.has_shadows == has_shadows;
+        });
+    };
+    if (has_samples(plan, options)) {
+        if (any_lit(true))
+            passes.samples = make_samples(device, plan, options, true, has_tangents);
+        if (any_lit(false))
+            passes.unshadowed_samples = make_samples(device, plan, options, false, has_tangents);
+    }
+    return passes;
+}
+
+void add_light(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass) {
+    const Lamp& lamp = pass.lamps.lamps[pass.lamp];
+    const bool has_shadows = pass.plan.lamps[pass.lamp].has_shadows;
+    const ShadowMaps& maps = on_card.shadows[pass.lamp];
+    FileOnCard& file = on_card.files.at(lamp.file.get());
+    std::vector<SampledSlab> sampled;
+    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
+        const SlabPlacement placement = placement_of(lamp.slabs[s]);
+        if (!file.sums.empty()) {
+            for (const SlabTextures& level : file.sums[s].levels)
+                place_slab(level, placement);
+            device.run_pass("light sums", [&] {
+                if (has_shadows)
+                    bind_shadows(maps, s);
+                add_light_sum(device, has_shadows ? passes.sums : passes.unshadowed_sums,
+                              file.sums[s], pass.options.q, lamp.dim, pass.query.size_px);
+            });
+        }
+        if (!file.sampled.empty()) {
+            place_slab(file.sampled[s], placement);
+            SampledSlab slab{&file.sampled[s], &lamp.slabs[s].prepared->slab, {}};
+            if (has_shadows)
+                slab.bind_shadows = [&maps, s] { bind_shadows(maps, s); };
+            sampled.push_back(std::move(slab));
+        }
+    }
+    if (sampled.empty())
+        return;
+    SampleQuery query = pass.query;
+    query.dim = lamp.dim;
+    add_light_samples(device, has_shadows ? passes.samples : passes.unshadowed_samples, sampled,
+                      query);
+}
+
+}  // namespace nearfield::render::gpu

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A scene's lamps on the graphics card. A file is there once, however many lamps name it.
+#pragma once
+
+#include "render/gpu/light_samples.h"
+#include "render/gpu/light_sum.h"
+#include "render/gpu/shadow_maps.h"
+#include "render/lamps.h"
+#include "render/options.h"
+#include "render/plan.h"
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+namespace nearfield::render::gpu {
+
+/// A light field's slabs, as the passes read them; what no pass reads is not there.
+struct FileOnCard {
+    std::vector<SumSlab> sums;
+    std::vector<SlabTextures> sampled;
+};
+
+struct LampsOnCard {
+    std::map<const LoadedLightField*, FileOnCard> files;
+    std::vector<ShadowMaps> shadows;  // [lamp]
+    std::uint64_t sum_bytes = 0, table_bytes = 0;
+};
+
+/// Uploads what the plan's passes read.
+LampsOnCard upload_lamps(Device& device,
+                         const Lamps& lamps,
+                         const Plan& plan,
+                         const RenderOptions& options);
+
+/// Programs that light surfaces, in the variants that the plan calls for.
+struct LightPasses {
+    LightSumPrograms sums, unshadowed_sums;
+    LightSamples samples, unshadowed_samples;
+};
+
+/// One lamp's light at the surfaces that are bound, added to image units 0 and 1.
+struct LampPass {
+    const Lamps& lamps;
+    std::size_t lamp = 0;
+    const Plan& plan;
+    const RenderOptions& options;
+    SampleQuery query;  // dim is the lamp's
+};
+
+LightPasses make_light_passes(Device& device,
+                              const Plan& plan,
+                              const RenderOptions& options,
+                              bool has_tangents);
+
+void add_light(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass);
+
+}  // namespace nearfield::render::gpu

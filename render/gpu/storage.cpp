@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gpu/storage.h"
+
+#include "formats/files/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nearfield::render::gpu {
+namespace {
+
+void check_size(const Device& device, const std::string& what, glm::ivec2 size, int layers) {
+    const int most = device.max_texture_px();
+    if (size.x > most || size.y > most)
+        throw Error{"too large for a texture of " + device.renderer(), what,
+                    fmt::format("at most {} x {} texels", most, most),
+                    fmt::format("{} x {}", size.x, size.y)};
+    if (layers > device.max_layers())
+        throw Error{"too many images for a texture of " + device.renderer(), what,
+                    fmt::format("at most {} layers", device.max_layers()),
+                    fmt::format("{}", layers)};
+}
+
+void set_nearest(GLuint id) {
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void count(Device& device, GLenum internal_format, glm::ivec2 size, int layers) {
+    device.count_allocation(bytes_per_texel(internal_format) * static_cast<std::size_t>(size.x) *
+                            static_cast<std::size_t>(size.y) * static_cast<std::size_t>(layers));
+}
+
+GLenum format_of(int channels) {
+    return channels == 1 ? GL_RED : channels == 2 ? GL_RG : GL_RGBA;
+}
+
+}  // namespace
+
+std::size_t bytes_per_texel(GLenum internal_format) {
+    switch (internal_format) {
+        case GL_R8:
+            return 1;
+        case GL_R32F:
+        case GL_R32UI:
+        case GL_RG16F:
+        case GL_RGBA8:
+        case GL_DEPTH_COMPONENT32F:
+            return 4;
+        case GL_RG32F:
+        case GL_RGBA16F:
+            return 8;
+        case GL_RGBA32F:
+            return 16;
+        default:
+            return 0;
+    }
+}
+
+Texture make_texture(Device& device,
+                     const std::string& what,
+                     GLenum internal_format,
+                     glm::ivec2 size) {
+    check_size(device, what, size, 1);
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &id);
+    Texture texture(id);
+    glTextureStorage2D(id, 1, internal_format, size.x, size.y);
+    set_nearest(id);
+    count(device, internal_format, size, 1);
+    device.check(what);
+    return texture;
+}
+
+Texture make_texture_array(
+    Device& device, const std::string& what, GLenum internal_format, glm::ivec2 size, int layers) {
+    check_size(device, what, size, layers);
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    Texture texture(id);
+    glTextureStorage3D(id, 1, internal_format, size.x, size.y, layers);
+    set_nearest(id);
+    count(device, internal_format, size, layers);
+    device.check(what);
+    return texture;
+}
+
+void upload_layers(const Texture& array,
+                   glm::ivec2 size,
+                   int first_layer,
+                   int layers,
+                   int channels,
+                   const float* values) {
+    glTextureSubImage3D(array.id(), 0, 0, 0, first_layer, size.x, size.y, layers,
+                        format_of(channels), GL_FLOAT, values);
+}
+
+void upload(const Texture& texture, glm::ivec2 size, int channels, const float* values) {
+    glTextureSubImage2D(texture.id(), 0, 0, 0, size.x, size.y, format_of(channels), GL_FLOAT,
+                        values);
+}
+
+std::vector<float> read_back(const Texture& texture, glm::ivec2 size, int channels) {
+    std::vector<float> values(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                              static_cast<std::size_t>(channels));
+    glGetTextureImage(texture.id(), 0, format_of(channels), GL_FLOAT,
+                      static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+    return values;
+}
+
+Buffer make_buffer(Device& device, std::span<const std::byte> data) {
+    GLuint id = 0;
+    glCreateBuffers(1, &id);
+    Buffer buffer(id);
+    // No buffer is empty: drivers refuse those.
+    const std::size_t bytes = std::max<std::size_t>(data.size(), 16);
+    glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (!data.empty())
+        glNamedBufferSubData(id, 0, static_cast<GLsizeiptr>(data.size()), data.data());
+    device.count_allocation(bytes);
+    return buffer;
+}
+
+Buffer make_zero_buffer(Device& device, std::size_t bytes) {
+    GLuint id = 0;
+    glCreateBuffers(1, &id);
+    Buffer buffer(id);
+    glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    glClearNamedBufferData(id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    device.count_allocation(bytes);
+    return buffer;
+}
+
+}  // namespace nearfield::render::gpu

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a picture is asked for; the same for every device.
+#pragma once
+
+#include "formats/model/sampler.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace nearfield::render {
+
+// So many samples a camera sample and lamp keep the ratio estimator's bias small.
+constexpr int kFewestSamples = 8;
+constexpr int kUsualSamples = 64;
+constexpr int kMostSamples = 1 << 20;
+
+enum class Device { Auto, Cpu, Gl };
+
+/// Auto: as the scene calls for it (needs.h).
+enum class Switch { Auto, On, Off };
+
+/// What may be left out of a picture without a change where the scene does not call for it.
+struct Effects {
+    Switch color = Switch::Auto;         // off: gray, of equal luminance
+    Switch shadows = Switch::Auto;       // off: light passes through everything
+    Switch gloss = Switch::Auto;         // off: the materials' diffuse parts alone
+    Switch tone_mapping = Switch::Auto;  // off: no picture for a display
+};
+
+/// What stands for all points of a cell of a lamp's U plane.
+enum class ShadowEye {
+    Cell,   // the middle of its light, on U
+    Paper,  // the mean over its images of the medians of C_m, on S: what stands between U and S is
+            // missed, and shadows are displaced
+};
+
+/// Of the OpenGL renderer's shadow maps. Equal options on the same lamp and scene give the same
+/// maps.
+struct ShadowMapOptions {
+    ShadowEye eye = ShadowEye::Cell;
+    int maps = 0;      // of a lamp, at most (one a slab with light at least); 0: one a cell
+    int map_px = 192;  // a side
+    int pcf_taps = 4;  // percentage-closer filtering: 1, 4, 9 or 16
+
+    bool operator==(const ShadowMapOptions&) const = default;
+};
+
+/// Throws Error naming the option if one is out of range.
+void check(const ShadowMapOptions& options);
+
+struct RenderOptions {
+    Device device = Device::Cpu;
+    glm::ivec2 size_px{640,
+                       0};  // height 0: by the camera's aspect ratio, 3/4 of the width if unknown
+    std::string camera;     // by name; empty: the first
+    int samples_per_pixel = 1;  // 1: the pixel's center; n*n: n x n strata
+
+    /// How light is found. Empty: the windowed sum times traced visibility, and samples for glossy
+    /// lobes alone; else samples with a shadow ray each for everything.
+    std::optional<model::Sampler> sampler;
+    /// Of a pixel and lamp, >= 2: more, less noise. 0: 64, or as many as error_rel and time_s call
+    /// for; with one of those: at most so many.
+    int samples = 0;
+    int q = 0;  // of the windowed sum: windows of at most so many texels a side; 0: exact
+    std::optional<model::Sequence> sequence;  // of samplers; empty: default_sequence
+    model::Shift shift = model::Shift::Random;
+    std::uint32_t seed = 1;
+
+    /// Passes are added until Noise::error_rel() falls to it; 0: one pass.
+    double error_rel = 0;
+    /// Passes are added while they fit, counted from the call of the renderer; 0: no limit. What
+    /// such a picture holds depends on the clock.
+    double time_s = 0;
+
+    int threads = 0;  // 0: all cores. The picture does not depend on it
+    /// Adds the layer sigma_measured where a lamp's file holds sigmas: in double, many times
+    /// the time of a light sum.
+    bool sigma_measured = false;
+
+    Effects effects;
+    ShadowMapOptions shadow_maps;  // OpenGL alone
+    bool is_displayed = false;     // the caller tone-maps the picture
+};
+
+/// Throws Error naming the option if one is out of range.
+void check(const RenderOptions& options);
+
+}  // namespace nearfield::render
