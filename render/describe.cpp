@@ -68,6 +68,18 @@ std::string stages_on_card(const RenderReport& report) {
     return text;
 }
 
+/// What sigma leaves out on the graphics card.
+std::string without(const RenderReport& report) {
+    if (report.plan.device != Device::Gl)
+        return "";
+    std::string text;
+    if (has_pass(report.plan, PassId::ShadowMaps))
+        text += "; without the error of shadow maps";
+    if (report.q > 0)
+        text += "; without the bias of coarser images";
+    return text;
+}
+
 }  // namespace
 
 std::string summary(const RenderReport& report, const RenderOptions& options, glm::ivec2 size_px) {
@@ -76,9 +88,7 @@ std::string summary(const RenderReport& report, const RenderOptions& options, gl
         named_device(report), passes(report, options), report.load_s, report.build_s,
         report.plan.device == Device::Gl ? stages_on_card(report) : stages_on_cpu(report, options),
         summary(report.sampling), goal(report, options),
-        report.has_sigma_measured                   ? "; with the layer sigma_measured"
-        : has_pass(report.plan, PassId::ShadowMaps) ? "; without the error of shadow maps"
-                                                    : "");
+        report.has_sigma_measured ? "; with the layer sigma_measured" : without(report));
 }
 
 std::string summary(const Noise& noise) {

@@ -11,8 +11,10 @@
 namespace nearfield::render {
 namespace {
 
-/// Why there is no OpenGL; nothing where there is.
-std::optional<std::string> missing_context() {
+/// Why not by OpenGL; nothing where it can be.
+std::optional<std::string> reason_for_cpu(const RenderOptions& options) {
+    if (options.sigma_measured)
+        return "sigma_measured is asked for";
     try {
         const gpu::HeadlessContext context;
         return std::nullopt;
@@ -22,11 +24,11 @@ std::optional<std::string> missing_context() {
 }
 
 Rendered render_auto(const Scene& scene, const RenderOptions& options, const RenderHooks& hooks) {
-    const std::optional<std::string> missing = missing_context();
+    const std::optional<std::string> reason = reason_for_cpu(options);
     Rendered rendered =
-        missing ? render_cpu(scene, options, hooks) : render_gl(scene, options, hooks);
+        reason ? render_cpu(scene, options, hooks) : render_gl(scene, options, hooks);
     rendered.report.device_reason =
-        missing ? *missing : std::string("there is an OpenGL 4.5 context");
+        reason ? *reason : std::string("there is an OpenGL 4.5 context");
     return rendered;
 }
 

@@ -52,6 +52,8 @@ void check(const RenderOptions& options) {
         refuse("error", "above 0 and below 1", fmt::format("{}", options.error_rel));
     if (!(options.time_s >= 0.0))
         refuse("time", "0 (no limit) or more", fmt::format("{} s", options.time_s));
+    if (options.sigma_measured && options.device == Device::Gl)
+        refuse("sigma measured", "device cpu", "gl");
     check_range("threads", options.threads, 0, 4096, " (all)");
 }
 

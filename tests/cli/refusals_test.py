@@ -37,6 +37,7 @@ USAGE = [
     ([*RENDER, "--error", "1"], ["--error", "'1'"]),
     ([*RENDER, "--time-ms", "-1"], ["--time-ms", "'-1'"]),
     ([*RENDER, "--tonemap", "0"], ["--tonemap", "filmic, papers", "'0'"]),
+    ([*RENDER, "--device", "gl", "--sigma-measured"], ["sigma measured", "device cpu", "gl"]),
     ([*RENDER, "--device", "gpu"], ["--device", "cpu", "'gpu'"]),
     ([*RENDER, "--effect", "shadow=off"], ["--effect", "color, shadows, gloss, tone-mapping", "'shadow=off'"]),
     ([*RENDER, "--effect", "tone-mapping=off", "--png", "x.png"], ["--png", "tone-mapping=off"]),
