@@ -30,7 +30,7 @@ constexpr std::array<ShadowSweepText, 4> kSweeps = {{
 }};
 
 std::string ms(double time_s) {
-    return fmt::format("{:.3g} ms", 1e3 * time_s);
+    return fmt::format("{:.{}f} ms", 1e3 * time_s, time_s < 0.1 ? 1 : 0);
 }
 
 report::Section what_this_is(const ShadowFindings& findings, const ShadowSetup& setup) {
