@@ -67,6 +67,13 @@ SampleSets make_sets(int samples, int camera_samples_per_pixel) {
     return {samples, std::min(samples, camera_samples_per_pixel == 1 ? kMostSets : 2)};
 }
 
+SampleSets sets_of(const RenderOptions& options, int samples) {
+    // 8 each keep the ratio's bias small.
+    const int each =
+        std::max(samples / options.samples_per_pixel, std::min(samples, kFewestSamples));
+    return make_sets(each, options.samples_per_pixel);
+}
+
 Estimated combine_means(std::span<const SetSums> sets, glm::dvec3 diffuse) {
     const SetSums total = total_of(sets);
     Estimated result;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "formats/model/sampler.h"
+#include "render/options.h"
 
 #include <glm/glm.hpp>
 
@@ -25,6 +26,10 @@ constexpr int kMostSets = 4;
 /// The sets of one camera sample: 4, or 2 where several camera samples share a pixel, since theirs
 /// add to the pixel's sigma; a sample each at least.
 SampleSets make_sets(int samples, int camera_samples_per_pixel);
+
+/// The sets of one camera sample in a pass that draws `samples` of a pixel and lamp: camera samples
+/// of one pixel share them.
+SampleSets sets_of(const RenderOptions& options, int samples);
 
 /// What one set of samples found at one hit: sums over its samples, which over `count` are
 /// estimates.

@@ -203,13 +203,6 @@ void render_block(const Frame& frame,
 
 }  // namespace
 
-SampleSets sets_of(const RenderOptions& options, int samples) {
-    // Camera samples of one pixel share its samples; 8 each keep the ratio's bias small.
-    const int each =
-        std::max(samples / options.samples_per_pixel, std::min(samples, kFewestSamples));
-    return make_sets(each, options.samples_per_pixel);
-}
-
 void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileReport& report) {
     const glm::ivec2 last = glm::min(first + kTilePx, frame.picture.size_px);
     Block block;

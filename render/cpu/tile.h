@@ -70,7 +70,4 @@ void finish_tile(const Frame& frame, glm::ivec2 first, const TileWeight& weight)
 /// What multiplies the root of a pixel's variance, which few sets tell: unbiased_root.
 float root_of_variance(const RenderOptions& options, const TileWeight& weight);
 
-/// The pass' sets of samples of one camera sample and lamp.
-SampleSets sets_of(const RenderOptions& options, int samples);
-
 }  // namespace nearfield::render

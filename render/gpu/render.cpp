@@ -106,7 +106,7 @@ void add_passes(GlFrame& frame, double call_s, Picture& picture, RenderReport& r
     const int samples = options.samples > 0 ? options.samples : kUsualSamples;
     card::SampleQuery query;
     query.size_px = picture.size_px;
-    query.sets = make_sets(samples, options.samples_per_pixel);
+    query.sets = sets_of(options, samples);
     query.seed = options.seed;
     std::uint32_t first_set = 0;
     const bool is_noisy = options.sampler.has_value() || frame.plan.has_gloss;

@@ -105,6 +105,16 @@ Scene sheets_under_lamp() {
     return scene;
 }
 
+// A pixel's camera samples share its samples, as on the CPU: sigma is no smaller for them.
+TEST(GlRender, CameraSamplesShareAPixelsSamples) {
+    const Scene scene = test::uneven_scene();
+    RenderOptions options = small_options(Switch::Off);
+    options.sampler = model::Sampler::Uniform;
+    options.samples_per_pixel = 4;
+    const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
+    EXPECT_NEAR(gl.report.sampling.mean_rel / cpu.report.sampling.mean_rel, 1.0, 0.1);
+}
+
 TEST(GlRender, ShadowMapsAreNearTracedShadows) {
     const Scene scene = sheets_under_lamp();
     RenderOptions options = small_options(Switch::Auto);
