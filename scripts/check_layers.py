@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that includes follow the layers, and that a third-party library stays behind its folder.
 
-formats/files <- formats/model <- formats/{rays,scene,report} <- {render, sample_data} <- app; tests use all.
+formats/files <- formats/{model,capture} <- formats/{rays,scene,report} <- {acquire, render, sample_data} <- app; tests use all.
 formats/shared is used by all. Prints each breach as file:line and exits 1 if there is one.
 """
 import pathlib
@@ -13,26 +13,29 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What a folder may include of the project, besides itself. The longest matching prefix of a path is its folder.
 ALLOWED = {
     "formats/files": [],
+    "formats/capture": ["formats/files"],
     "formats/shared": [],
     "formats/model": ["formats/files", "formats/shared"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
+    "acquire": ["formats"],
     "render": ["formats"],
     "sample_data": ["formats"],
-    "app": ["formats", "render", "sample_data"],
-    "tests": ["formats", "render", "sample_data", "app"],
+    "app": ["formats", "acquire", "render", "sample_data"],
+    "tests": ["formats", "acquire", "render", "sample_data", "app"],
 }
 
 # Where a library's headers may be included.
 LIBRARIES = {
     r"openexr|OpenEXR|Imf|Imath": ["formats/files", "tests/files"],
-    r"png\.h": ["formats/files", "tests"],
+    r"png\.h": ["formats/files", "formats/capture", "tests"],
     r"xxhash": ["formats/files"],
     r"tiny_gltf|tinygltf": ["formats/scene"],
     r"embree": ["render/cpu"],
     r"epoxy/": ["render/gpu", "tests/render/gpu"],
     r"hwy/": ["formats/model"],
+    r"arv\.h": ["acquire", "tests/sample_data"],
     r"CLI/": ["app"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
 }

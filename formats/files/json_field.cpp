@@ -4,7 +4,9 @@
 #include "formats/files/error.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace nearfield {
@@ -19,6 +21,15 @@ void JsonField::fail(const std::string& expected) const {
 
 bool JsonField::has(const std::string& key) const {
     return value_->is_object() && value_->contains(key);
+}
+
+void JsonField::only(const std::vector<std::string>& known) const {
+    if (!value_->is_object())
+        fail("an object");
+    for (const auto& [key, value] : value_->items())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            throw Error{"unknown key", where_, fmt::format("one of {}", fmt::join(known, ", ")),
+                        "'" + key + "'"};
 }
 
 JsonField JsonField::at(const std::string& key) const {

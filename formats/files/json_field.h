@@ -20,6 +20,8 @@ class JsonField {
 
     const std::string& where() const { return where_; }
     bool has(const std::string& key) const;
+    /// Throws Error where an object has a key that is not among the known ones: a slip of the pen.
+    void only(const std::vector<std::string>& known) const;
     JsonField at(const std::string& key) const;
     std::vector<JsonField> elements() const;
     std::vector<JsonField> elements(std::size_t count) const;

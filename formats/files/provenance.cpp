@@ -4,6 +4,7 @@
 #include "formats/files/error.h"
 #include "formats/files/json_field.h"
 #include "formats/files/metadata.h"
+#include "formats/files/provenance_json.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,6 +19,14 @@
 #include <memory>
 
 namespace nearfield {
+namespace {
+
+// As `xxh128sum` prints it.
+std::string as_text(XXH128_hash_t hash) {
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+}  // namespace
 
 std::string program_version() {
     return "nearfield " NEARFIELD_VERSION;
@@ -37,8 +46,11 @@ std::string hash_file(const std::string& path) {
         XXH3_128bits_update(state.get(), block.data(), size);
     if (std::ferror(file.get()) != 0)
         throw Error{"cannot read file", path, "", system_error()};
-    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+    return as_text(XXH3_128bits_digest(state.get()));
+}
+
+std::string hash_bytes(std::string_view bytes) {
+    return as_text(XXH3_128bits(bytes.data(), bytes.size()));
 }
 
 Provenance::Input describe_input(const std::string& path) {
@@ -61,8 +73,7 @@ RunRecord finish_run(double start_s, int threads) {
     return run;
 }
 
-exr::Attributes provenance_attributes(const Provenance& provenance,
-                                      const std::optional<RunRecord>& run) {
+Json json_of(const Provenance& provenance) {
     Json options = Json::array(), inputs = Json::array(), figures = Json::array();
     for (const auto& [name, value] : provenance.options)
         options.push_back({{"name", name}, {"value", value}});
@@ -74,12 +85,29 @@ exr::Attributes provenance_attributes(const Provenance& provenance,
                         fmt::format("{}", value)};
         figures.push_back({{"name", name}, {"value", value}});
     }
-    const Json document = {{"program", provenance.program},
-                           {"command", provenance.command},
-                           {"options", options},
-                           {"inputs", inputs},
-                           {"figures", figures}};
-    exr::Attributes attributes = {{kProvenanceAttribute, json_text(document)}};
+    return {{"program", provenance.program},
+            {"command", provenance.command},
+            {"options", options},
+            {"inputs", inputs},
+            {"figures", figures}};
+}
+
+Provenance provenance_from(const JsonField& root) {
+    Provenance provenance;
+    provenance.program = root.at("program").text();
+    provenance.command = root.at("command").text();
+    for (const JsonField& option : root.at("options").elements())
+        provenance.options.emplace_back(option.at("name").text(), option.at("value").text());
+    for (const JsonField& input : root.at("inputs").elements())
+        provenance.inputs.push_back({input.at("name").text(), input.at("xxh128").text()});
+    for (const JsonField& figure : root.at("figures").elements())
+        provenance.figures.emplace_back(figure.at("name").text(), figure.at("value").number());
+    return provenance;
+}
+
+exr::Attributes provenance_attributes(const Provenance& provenance,
+                                      const std::optional<RunRecord>& run) {
+    exr::Attributes attributes = {{kProvenanceAttribute, json_text(json_of(provenance))}};
     if (run)
         attributes.emplace_back(kRunAttribute, json_text({{"date_utc", run->date_utc},
                                                           {"time_s", run->time_s},
@@ -94,17 +122,7 @@ Provenance read_provenance(const exr::Reader& reader, const std::string& path) {
         return {};
     const std::string where = path + ", " + kProvenanceAttribute;
     const Json document = parse_json(*text, where);
-    const JsonField root(document, where);
-    Provenance provenance;
-    provenance.program = root.at("program").text();
-    provenance.command = root.at("command").text();
-    for (const JsonField& option : root.at("options").elements())
-        provenance.options.emplace_back(option.at("name").text(), option.at("value").text());
-    for (const JsonField& input : root.at("inputs").elements())
-        provenance.inputs.push_back({input.at("name").text(), input.at("xxh128").text()});
-    for (const JsonField& figure : root.at("figures").elements())
-        provenance.figures.emplace_back(figure.at("name").text(), figure.at("value").number());
-    return provenance;
+    return provenance_from({document, where});
 }
 
 std::optional<RunRecord> read_run(const exr::Reader& reader, const std::string& path) {

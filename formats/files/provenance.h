@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,9 @@ std::string program_version();
 /// XXH3 (128 bits) of a file's content, as `xxh128sum` prints it. Throws Error if the file cannot
 /// be read.
 std::string hash_file(const std::string& path);
+
+/// The same of bytes in memory.
+std::string hash_bytes(std::string_view bytes);
 
 /// The input's entry: name without folders, hash. Throws Error if the file cannot be read.
 Provenance::Input describe_input(const std::string& path);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What stands on the bench while a frame is taken: filter position, lamp, target.
+#pragma once
+
+#include "acquire/camera.h"
+#include "formats/capture/plan.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace nearfield::acquire {
+
+/// Moves filter, lamp and targets, and reads the photometer.
+class Stage {
+  public:
+    Stage() = default;
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+    virtual ~Stage() = default;
+
+    /// Brings the bench to what a shot needs; returns when it is there. Nothing to do is quick.
+    /// Throws Error where it cannot (stalled, out of range), DeviceLost, Stopped.
+    virtual void arrange(const capture::Shot& shot, const ShouldStop& should_stop) = 0;
+    /// The photometer's illuminance now, where there is one.
+    virtual std::optional<double> reading_lx() = 0;
+};
+
+/// Asks a person. `ask` shows a request and returns when it is done; throws Stopped.
+using Ask = std::function<void(const std::string& request, const ShouldStop& should_stop)>;
+
+/// A person moves: asked whenever something other than before must stand on the bench.
+std::unique_ptr<Stage> manual_stage(Ask ask);
+
+}  // namespace nearfield::acquire
