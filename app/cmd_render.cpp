@@ -4,6 +4,7 @@
 #include "app/output.h"
 #include "app/progress.h"
 #include "app/render_options.h"
+#include "render/compare.h"
 #include "render/device.h"
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,8 @@ void check_files(const RenderCommand& command, const Scene& scene) {
     std::vector<std::string> inputs = {command.scene};
     for (const LuminaireInstance& lamp : scene.luminaires)
         inputs.push_back(lamp.path);
+    if (!command.compare.empty())
+        inputs.push_back(command.compare);
     check_outputs({command.output.path, command.png}, inputs);
 }
 
@@ -59,6 +62,15 @@ double write_display(const RenderCommand& command,
     return display.exposure_ev;
 }
 
+/// Adds the layer that says where the picture differs, and says how much.
+void add_comparison(const RenderCommand& command, Picture& picture) {
+    const render::Comparison found =
+        render::compare_pictures(picture, read_picture(command.compare));
+    picture.provenance.inputs.push_back(describe_input(command.compare));
+    say(fmt::format("{}: against {}: {}\n", command.output.path, command.compare,
+                    render::summary(found)));
+}
+
 void run(RenderCommand command) {
     const double start_s = now_s();
     complete(command);
@@ -76,6 +88,8 @@ void run(RenderCommand command) {
 
     picture.provenance = render::describe(scene, command.options, report);
     picture.provenance.inputs.push_back(describe_input(command.scene));
+    if (!command.compare.empty())
+        add_comparison(command, picture);
     const RunRecord run = nearfield::finish_run(start_s, report.threads);
     write_picture(picture, command.output.stored(run), command.output.path);
     say(fmt::format("{}: {}\n", command.output.path,
@@ -101,6 +115,7 @@ void add_render(CLI::App& app) {
                      "nearfield render out/scene.gltf -o picture.exr --width 1280 --exposure-ev 4",
                      "nearfield render out/scene.gltf -o picture.exr --error 0.01",
                      "nearfield render out/scene.gltf -o preview.exr --time-ms 500",
+                     "nearfield render out/scene.gltf -o gl.exr --device gl --compare picture.exr",
                      "nearfield render out/scene.gltf -o picture.exr --explain"});
     add_render_options(*sub, *c);
     sub->callback([c] { run(*c); });

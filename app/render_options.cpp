@@ -64,6 +64,10 @@ void add_shadow_map_options(CLI::App& sub, RenderCommand& c) {
                "gl: a shadow map's side; finer, nearer to traced shadows");
     add_choice(sub, "--shadow-taps", maps.pcf_taps, {{"1", 1}, {"4", 4}, {"9", 9}, {"16", 16}},
                "gl: texels of a map that a receiver is compared with; more, softer");
+    add_choice(sub, "--shadow-weights", c.options.shadow_weights,
+               {{"shares", render::ShadowWeights::Shares}, {"pdis", render::ShadowWeights::Pdis}},
+               "gl, of sum: shares: each cell's own light by what its map shows; pdis: an image's "
+               "light by the mean over its cells, to compare with");
 }
 
 struct EffectName {
@@ -129,6 +133,10 @@ void add_render_options(CLI::App& sub, RenderCommand& c) {
         sub, "--device", c.options.device,
         {{"auto", render::Device::Auto}, {"cpu", render::Device::Cpu}, {"gl", render::Device::Gl}},
         "what computes; auto: OpenGL where there is a context, else the CPU");
+    sub.add_option("--compare", c.compare,
+                   "picture of the same size, NAME.exr: print how far this one is from it, and add "
+                   "the layer error")
+        ->type_name("FILE");
     add_picture_options(sub, c);
     add_light_options(sub, c);
     add_effect_options(sub, c);

@@ -16,7 +16,7 @@ class App;
 namespace nearfield::app {
 
 struct RenderCommand {
-    std::string scene, png;
+    std::string scene, png, compare;
     Output output;
     double time_ms = 0;  // 0: no limit
     bool explain = false;

@@ -75,8 +75,9 @@ std::string without(const RenderReport& report) {
     std::string text;
     if (has_pass(report.plan, PassId::ShadowMaps))
         text += "; without the error of shadow maps";
-    if (report.q > 0)
-        text += "; without the bias of coarser images";
+    if (report.unmapped_pixels > 0)
+        text += fmt::format("; {} pixels between a lamp's planes that its maps do not show are lit",
+                            report.unmapped_pixels);
     return text;
 }
 
@@ -152,6 +153,7 @@ std::string forced_effects(const Effects& effects) {
 }  // namespace
 
 Provenance describe(const Scene& scene, const RenderOptions& options, const RenderReport& report) {
+    const bool is_gl = report.plan.device == Device::Gl;
     Provenance provenance;
     provenance.program = program_version();
     provenance.command = "render";
@@ -166,12 +168,20 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
                           {"shift", model::name_of(options.shift)},
                           {"error", fmt::format("{}", options.error_rel)},
                           {"seed", fmt::format("{}", options.seed)},
-                          {"device", report.plan.device == Device::Gl ? "gl" : "cpu"},
+                          {"device", is_gl ? "gl" : "cpu"},
                           {"effect", forced_effects(options.effects)},
                           {"sigma-measured", options.sigma_measured ? "true" : "false"}};
     if (options.time_s > 0.0)
         provenance.options.emplace_back(
             "time-ms", fmt::format("{} (passes and q depend on the clock)", 1e3 * options.time_s));
+    if (is_gl && has_pass(report.plan, PassId::ShadowMaps)) {
+        const ShadowMapOptions& maps = options.shadow_maps;
+        provenance.options.emplace_back("shadow-maps", fmt::format("{}", maps.maps));
+        provenance.options.emplace_back("shadow-map-px", fmt::format("{}", maps.map_px));
+        provenance.options.emplace_back("shadow-taps", fmt::format("{}", maps.pcf_taps));
+        provenance.options.emplace_back(
+            "shadow-weights", options.shadow_weights == ShadowWeights::Pdis ? "pdis" : "shares");
+    }
     std::set<std::string> seen;
     for (const LuminaireInstance& luminaire : scene.luminaires)
         if (luminaire.on && luminaire.dim > 0.0 && seen.insert(luminaire.path).second)
@@ -184,6 +194,8 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
         {"passes", report.passes},
         {"samples_per_pixel_and_lamp", report.samples},
         {"q_used", report.q}};
+    if (is_gl)
+        provenance.figures.push_back({"unmapped_pixels", report.unmapped_pixels});
     return provenance;
 }
 

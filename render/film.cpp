@@ -103,6 +103,12 @@ Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_sigma_meas
     return picture;
 }
 
+std::size_t add_bias_layer(Picture& picture) {
+    picture.layers.push_back({"bias_bound", {"Y"}, {}});
+    picture.layers.back().values.assign(picture.layers[kSigma].values.size(), 0.0F);
+    return picture.layers.size() - 1;
+}
+
 double layer_bytes(const Picture& picture) {
     double bytes = 0.0;
     for (const Layer& layer : picture.layers)

@@ -45,6 +45,9 @@ enum LayerIndex : std::size_t {
 /// Error if the picture is larger than the memory that is left.
 Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_sigma_measured);
 
+/// Adds the layer bias_bound, black; returns its index.
+std::size_t add_bias_layer(Picture& picture);
+
 /// Memory of all layers.
 double layer_bytes(const Picture& picture);
 

@@ -48,6 +48,8 @@ void check(const RenderOptions& options) {
     check_range("q", options.q, 0, 1 << 16, " (exact)");
     if (options.q > 0 && options.sampler)
         refuse("q", "0 with any sampler but sum", fmt::format("{}", options.q));
+    if (options.shadow_weights == ShadowWeights::Pdis && options.sampler)
+        refuse("shadow weights", "shares with any sampler but sum", "pdis");
     if (!(options.error_rel >= 0.0 && options.error_rel < 1.0))
         refuse("error", "above 0 and below 1", fmt::format("{}", options.error_rel));
     if (!(options.time_s >= 0.0))

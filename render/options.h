@@ -51,6 +51,12 @@ struct ShadowMapOptions {
 /// Throws Error naming the option if one is out of range.
 void check(const ShadowMapOptions& options);
 
+/// How the visibility of a lamp's cells, by shadow maps, weighs on its light (OpenGL, sums alone).
+enum class ShadowWeights {
+    Shares,  // each cell's own light by its own
+    Pdis,    // an image's light by the plain mean over the cells of its basis function
+};
+
 struct RenderOptions {
     Device device = Device::Cpu;
     glm::ivec2 size_px{640,
@@ -82,7 +88,8 @@ struct RenderOptions {
 
     Effects effects;
     ShadowMapOptions shadow_maps;  // OpenGL alone
-    bool is_displayed = false;     // the caller tone-maps the picture
+    ShadowWeights shadow_weights = ShadowWeights::Shares;
+    bool is_displayed = false;  // the caller tone-maps the picture
 };
 
 /// Throws Error naming the option if one is out of range.

@@ -122,7 +122,9 @@ Decision accumulate(const Context& at) {
         return {true, "passes until an error or a time is reached"};
     if (at.options.samples_per_pixel > 1)
         return {true, fmt::format("{} samples a pixel", at.options.samples_per_pixel)};
-    return {false, "one pass, one sample a pixel"};
+    if (!is_any_lit(at.plan))
+        return {false, "no lamp lights anything"};
+    return {true, "lamp by lamp"};
 }
 
 Decision tone_mapping(const Context& at) {
@@ -157,18 +159,23 @@ double g_buffer_bytes(const Context& at) {
     return kOfPixel * pixels(at);
 }
 
-/// A map a cell of U and slab.
+/// A map a cell of U and slab, or as many as are asked for.
 double shadow_map_bytes(const Context& at) {
-    constexpr double kSidePx = 256.0, kOfTexel = 4.0;
+    constexpr double kOfTexel = 4.0;
+    const ShadowMapOptions& options = at.options.shadow_maps;
     double maps = 0.0;
-    for (std::size_t k = 0; k < at.lamps.lamps.size(); ++k)
+    for (std::size_t k = 0; k < at.lamps.lamps.size(); ++k) {
+        double cells = 0.0;
         for (const PlacedSlab& placed : at.lamps.lamps[k].slabs) {
             const Slab& slab = placed.prepared->slab;
-            const glm::dvec2 cells =
+            const glm::dvec2 along =
                 glm::dvec2(slab.grid - 1) + static_cast<double>(slab.profile.cells.size());
-            maps += at.plan.lamps[k].has_shadows ? cells.x * cells.y : 0.0;
+            cells += along.x * along.y;
         }
-    return kOfTexel * kSidePx * kSidePx * maps;
+        if (at.plan.lamps[k].has_shadows)
+            maps += options.maps > 0 ? std::min(cells, static_cast<double>(options.maps)) : cells;
+    }
+    return kOfTexel * options.map_px * options.map_px * maps;
 }
 
 double energy_bytes(const Context& at) {
@@ -208,7 +215,7 @@ constexpr Row kPasses[] = {
     {Device::Gl, PassId::LightSums, "light sums", "sums unshadowed light, exactly", light_sums, coefficient_bytes_of},
     {Device::Gl, PassId::Samples, "samples", "draws points on the lamps", gpu_samples, table_bytes_of},
     {Device::Gl, PassId::Gloss, "gloss", "reflects light by materials' lobes", gloss, no_bytes},
-    {Device::Gl, PassId::Accumulate, "accumulate", "adds passes up", accumulate, film_bytes},
+    {Device::Gl, PassId::Accumulate, "accumulate", "adds lamps and passes up", accumulate, film_bytes},
     {Device::Gl, PassId::ToneMapping, "tone mapping", "makes a picture for displays", tone_mapping, display_bytes},
 };
 // clang-format on

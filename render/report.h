@@ -54,6 +54,9 @@ struct RenderReport {
     double samples =
         0;      // of a pixel and lamp, all passes; a mean where time cut the last one short
     int q = 0;  // of the windowed sum, as asked for or as time called for
+    /// Pixels between the planes of a lamp with shadow maps that some of these do not show: lit
+    /// from there, whatever stands between. Lamps and slabs added, one sample a pixel.
+    int unmapped_pixels = 0;
     Noise sampling;
     double time_s = 0;                // of the call
     bool is_error_reached = true;     // false: error_rel was asked for and could not be had

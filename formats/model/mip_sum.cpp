@@ -55,18 +55,14 @@ int level_for(const PreparedMips& mips, const ReceiverF& receiver, int q) {
     const double distance_m = slab.delta_m + height_m;
     if (q == 0 || !(distance_m > 0.0))
         return 0;
-    const double per_pitch =
-        static_cast<double>(slab.profile.cells.size()) * std::abs(height_m) / distance_m;
-    const glm::dvec2 window_texels =
-        glm::min(per_pitch * slab.pitch_m / slab.texel_m(), glm::dvec2(slab.texels));
-    double widest = std::max(window_texels.x, window_texels.y);
-    int level = 0;
-    const int coarsest = static_cast<int>(mips.levels.size()) - 1;
-    while (level < coarsest && widest > static_cast<double>(q)) {
-        widest *= 0.5;
-        ++level;
-    }
-    return level;
+    glm::dvec2 texels;
+    for (int axis = 0; axis < 2; ++axis)
+        texels[axis] = shared::f64::window_texels(static_cast<double>(slab.profile.cells.size()),
+                                                  slab.pitch_m[axis], slab.texel_m()[axis],
+                                                  slab.delta_m, height_m);
+    texels = glm::min(texels, glm::dvec2(slab.texels));
+    return shared::f64::mip_level(std::max(texels.x, texels.y), static_cast<double>(q),
+                                  static_cast<int>(mips.levels.size()) - 1);
 }
 
 std::uint64_t irradiance(const PreparedMips& mips,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "formats/files/lightfield.h"
+#include "formats/model/axis_window.h"
 
 #include <glm/glm.hpp>
 
@@ -15,9 +16,7 @@
 
 namespace nearfield::model {
 
-/// Widest texel, in tangents, over which one node at the centroid stands for 1 / (1 + t^2)^2
-/// (radiance weighting): relative error h^2 / 12 f'' / 2 < 1e-4.
-constexpr float kWidestCentroidTexelT = 0.015F;
+using shared::kWidestCentroidTexelT;
 
 /// A slab made ready for SIMD, which may read a few floats beyond a row's end.
 struct PreparedSlab {

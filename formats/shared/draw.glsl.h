@@ -23,6 +23,9 @@ const uint kShiftRandom = 1u;
 const uint kShiftBlueNoise = 2u;
 const uint kShiftInterleaved = 3u;
 
+// Shifts of a glossy lobe's samples take the seed ^ this: they are independent of the lamp's.
+const uint kLobeSeed = 0x9e3779b9u;
+
 const float kBelowOne = 0.99999994f;  // 1 - 2^-24
 
 GPU_FN uvec2 shift_words(vec2 shift) {

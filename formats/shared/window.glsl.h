@@ -21,6 +21,10 @@
 
 SHARED_BEGIN
 
+// Widest texel, in tangents, over which one node at the centroid stands for 1 / (1 + t^2)^2
+// (radiance weighting): relative error h^2 / 12 f'' / 2 < 1e-4.
+const real kWidestCentroidTexelT = REAL(0.015);
+
 struct AxisView {
     real s_keep, p, s_slope, s_shift;  // e(s) = s_keep * s + (s - p) * s_slope + s_shift
     real cell_origin, cell_scale;      // e(u) = (u - cell_origin) * cell_scale
@@ -102,6 +106,23 @@ GPU_FN real t_of_e(AxisView v, real e) {
 // Delta).
 GPU_FN real s_of_u(real u, real p, real delta, real height) {
     return u + (p - u) * (delta / (delta + height));
+}
+
+// Texels that a basis function of so many cells shows a receiver along one axis of S.
+GPU_FN real window_texels(real cells, real pitch, real texel, real delta, real height) {
+    return cells * abs(height) / (delta + height) * pitch / texel;
+}
+
+// The finest of levels 0 ... coarsest on which the window spans at most q texels, each level's
+// twice as wide as the one's before; the coarsest where none is coarse enough.
+GPU_FN int mip_level(real texels_on_finest, real q, int coarsest) {
+    real texels = texels_on_finest;
+    int level = 0;
+    while (level < coarsest && texels > q) {
+        texels *= REAL(0.5);
+        level += 1;
+    }
+    return level;
 }
 
 // Moments over e in [lo, hi] of phi(x) = a0 + a1 x + a2 x^2, x = (u - center) * inv_pitch. Exact:

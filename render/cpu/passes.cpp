@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/cpu/passes.h"
 
-#include "render/cpu/pass_plan.h"
+#include "render/pass_plan.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -18,9 +18,8 @@ namespace {
 constexpr double kForever = std::numeric_limits<double>::infinity();
 // A first pass towards an error.
 constexpr int kFirstSamples = 16;
-// Shares of the time that is left: of the first pass, whose cost is known from trials alone, and of
-// later ones. The rest is for what the machine does besides.
-constexpr double kFirstShare = 0.7, kNextShare = 0.9;
+// Of the time that is left, what the first pass may plan for: its cost is known from trials alone.
+constexpr double kFirstShare = 0.7;
 // No tile of a later pass starts when so much of the time is over: it must end, and sums become
 // means.
 constexpr double kLastTile = 0.98;
@@ -63,20 +62,6 @@ glm::ivec2 first_pixel(const Frame& frame, std::size_t tile) {
     return glm::ivec2(static_cast<int>(tile % across), static_cast<int>(tile / across)) * kTilePx;
 }
 
-/// Of all work, as far as is known: towards the error by its square, and of the time.
-double fraction_done(const Run& run, double pass_samples_done) {
-    const RenderOptions& options = run.frame.options;
-    double fraction = 0.0;
-    if (options.time_s > 0.0)
-        fraction = run.elapsed_s() / options.time_s;
-    if (options.error_rel > 0.0 && run.drawn > 0.0) {
-        const double ratio = std::max(run.noise.error_rel() / options.error_rel, 1.0);
-        fraction =
-            std::max(fraction, (run.drawn + pass_samples_done) / (run.drawn * ratio * ratio));
-    }
-    return std::min(fraction, 1.0);
-}
-
 /// Adds a pass. Tiles that would start after end_s are left as they are.
 void render_pass(Run& run, const Pass& pass, double end_s) {
     const bool is_only = !(run.frame.options.error_rel > 0.0 || run.frame.options.time_s > 0.0);
@@ -92,9 +77,11 @@ void render_pass(Run& run, const Pass& pass, double end_s) {
         const std::lock_guard lock(mutex);
         ++done;
         if (run.hooks.progress)
-            run.hooks.progress(
-                {is_only ? done / tiles : fraction_done(run, pass.samples * done / tiles),
-                 static_cast<int>(pass.index), run.noise.error_rel()});
+            run.hooks.progress({is_only
+                                    ? done / tiles
+                                    : fraction_done(run.frame.options, run.noise, run.elapsed_s(),
+                                                    run.drawn, pass.samples * done / tiles),
+                                static_cast<int>(pass.index), run.noise.error_rel()});
     });
     run.drawn += pass.samples * done / tiles;
     run.last_pass_s = run.hooks.clock_s() - begin_s;
@@ -163,34 +150,6 @@ PassCost plan_first_pass(Run& run, int most, Pass& pass) {
     return cost;
 }
 
-/// 0: the picture is done.
-int next_samples(const Run& run, const Pass& last, PassCost cost, int most) {
-    const RenderOptions& options = run.frame.options;
-    const int drawn = static_cast<int>(run.drawn);
-    int samples = std::max(most - drawn, 0);
-    if (options.error_rel > 0.0)
-        samples = std::min(samples,
-                           samples_for_error(run.noise.mean_rel,
-                                             options.error_rel - run.noise.bias_mean_rel, drawn));
-    if (options.time_s > 0.0) {
-        // What the last pass took corrects the trials.
-        const double correction = run.last_pass_s / std::max(cost.of(last.samples), 1e-9);
-        cost.fixed_s *= correction;
-        cost.per_sample_s *= correction;
-        samples = std::min(samples, samples_within(cost, kNextShare * run.left_s()));
-        // A pass of few samples spends its time on sums that are known.
-        if (samples < std::max(kFewestSamples, drawn / 4) || !(run.noise.mean_rel > 0.0))
-            samples = 0;
-    }
-    return samples >= 2 ? samples : 0;
-}
-
-void add_bias_layer(Frame& frame) {
-    frame.bias_layer = frame.picture.layers.size();
-    frame.picture.layers.push_back({"bias_bound", {"Y"}, {}});
-    frame.picture.layers.back().values.assign(frame.picture.layers[kSigma].values.size(), 0.0F);
-}
-
 /// Of all tiles, in their order.
 TileReport total_of(const std::vector<TileReport>& reports) {
     TileReport total;
@@ -254,7 +213,7 @@ void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, Rende
         cost = plan_first_pass(run, most, pass);
     report.plan_s = now_s() - plan_start_s;
     if (pass.q > 0)
-        add_bias_layer(frame);
+        frame.bias_layer = add_bias_layer(frame.picture);
 
     const double passes_start_s = now_s();
     const int first_samples = pass.samples;
@@ -264,7 +223,10 @@ void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, Rende
                     pass.index > 0 && options.time_s > 0.0 ? start_s + kLastTile * options.time_s
                                                            : kForever);
         run.noise = noise_so_far(run);
-        pass.samples = has_goal ? next_samples(run, pass, cost, most) : 0;
+        pass.samples =
+            has_goal ? next_samples(options, {static_cast<int>(run.drawn), most, run.noise, cost,
+                                              pass.samples, run.last_pass_s, run.left_s()})
+                     : 0;
         ++pass.index;
     }
     fill_report(total_of(run.reports), now_s() - passes_start_s, report);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formats/shared/draw.glsl.h"
 #include "render/cpu/gloss.h"
 #include "render/cpu/lap.h"
 #include "render/cpu/shade.h"
@@ -7,9 +8,6 @@
 
 namespace nearfield::render {
 namespace {
-
-// Shifts of the lobe's samples are independent of the lamp's.
-constexpr std::uint32_t kLobeSeed = 0x9e3779b9U;
 
 glm::dvec3 position_world_m(const Lamp& lamp, const model::LightSample& sample) {
     const PlacedSlab& slab = lamp.slabs[static_cast<std::size_t>(sample.slab)];
@@ -61,7 +59,7 @@ SetSums sample_set(const GlossQuery& gloss, int set, Scratch& scratch) {
     result.reflected *= size;
     if (is_glossy)
         result.reflected +=
-            lobe_samples(gloss, shift_of_set(query, set, query.seed ^ kLobeSeed), scratch);
+            lobe_samples(gloss, shift_of_set(query, set, query.seed ^ shared::kLobeSeed), scratch);
     return result;
 }
 

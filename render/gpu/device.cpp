@@ -3,10 +3,13 @@
 
 #include "formats/files/error.h"
 #include "render/gpu/objects.h"
+#include "render/limits.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 namespace nearfield::render::gpu {
 namespace {
@@ -52,13 +55,34 @@ void GLAPIENTRY on_message(GLenum /*source*/,
                                       : static_cast<std::size_t>(length));
 }
 
+/// Gives a pass its name as long as it runs.
+class Named {
+  public:
+    Named(std::string& kept, const std::string& name)
+        : kept_(kept), before_(std::exchange(kept, name)) {}
+    ~Named() { kept_ = before_; }
+    Named(const Named&) = delete;
+    Named& operator=(const Named&) = delete;
+
+  private:
+    std::string& kept_;
+    std::string before_;
+};
+
+std::string mebibytes(double bytes) {
+    return fmt::format("{:.1f} MiB", bytes / (1024.0 * 1024.0));
+}
+
 }  // namespace
 
 Device::Device() : renderer_(text_of(GL_RENDERER)) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px_);
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &max_layers_);
-    has_timers_ = renderer_.find("llvmpipe") == std::string::npos &&
-                  renderer_.find("softpipe") == std::string::npos;
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    max_buffer_bytes_ = static_cast<std::uint64_t>(most);
+    is_on_cpu_ = renderer_.find("llvmpipe") != std::string::npos ||
+                 renderer_.find("softpipe") != std::string::npos;
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(on_message, &message_);
@@ -74,21 +98,53 @@ void Device::check(const std::string& pass) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR && message_.empty())
         return;
-    std::string said = std::exchange(message_, {});
-    while (!said.empty() && (said.back() == '\n' || said.back() == ' '))
-        said.pop_back();
+    throw Error{"the graphics driver reports an error", "pass '" + pass + "' on " + renderer_,
+                "none", said(error)};
+}
+
+std::string Device::place_of(const std::string& what) const {
+    return pass_.empty() ? fmt::format("{} on {}", what, renderer_)
+                         : fmt::format("{} in pass '{}' on {}", what, pass_, renderer_);
+}
+
+void Device::check_room(const std::string& what, std::uint64_t bytes) const {
+    constexpr std::uint64_t kSmall = std::uint64_t{1} << 20U;  // not worth a look
+    if (!is_on_cpu_ || bytes < kSmall)
+        return;
+    const double available = available_memory_bytes();
+    if (static_cast<double>(bytes) > available)
+        throw Error{"out of graphics memory, which is the machine's here", place_of(what),
+                    "at most " + mebibytes(available), mebibytes(static_cast<double>(bytes))};
+}
+
+void Device::check_allocation(const std::string& what, std::uint64_t bytes) {
+    const GLenum error = glGetError();
+    if (error == GL_OUT_OF_MEMORY)
+        throw Error{
+            "out of graphics memory", place_of(what),
+            fmt::format("room for {} beside {} in use", mebibytes(static_cast<double>(bytes)),
+                        mebibytes(static_cast<double>(allocated_bytes_))),
+            said(error)};
+    if (error != GL_NO_ERROR || !message_.empty())
+        throw Error{"the graphics driver reports an error", place_of(what), "none", said(error)};
+}
+
+std::string Device::said(unsigned error) {
+    std::string text = std::exchange(message_, {});
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' '))
+        text.pop_back();
     while (glGetError() != GL_NO_ERROR) {
     }
     if (error != GL_NO_ERROR)
-        said = name_of_error(error) + (said.empty() ? "" : ": " + said);
-    throw Error{"the graphics driver reports an error", "pass '" + pass + "' on " + renderer_,
-                "none", said};
+        text = name_of_error(error) + (text.empty() ? "" : ": " + text);
+    return text;
 }
 
 void Device::run_pass(const std::string& name, const std::function<void()>& pass) {
     const std::uint64_t bytes_before = allocated_bytes_;
+    const Named named(pass_, name);
     double time_s = 0.0;
-    if (has_timers_) {
+    if (!is_on_cpu_) {
         GLuint id = 0;
         glCreateQueries(GL_TIME_ELAPSED, 1, &id);
         const Query query(id);

@@ -28,6 +28,8 @@ class Device {
     const std::string& renderer() const { return renderer_; }
     int max_texture_px() const { return max_texture_px_; }
     int max_layers() const { return max_layers_; }
+    /// Of a buffer that a shader reads.
+    std::uint64_t max_buffer_bytes() const { return max_buffer_bytes_; }
 
     /// Runs a pass and adds to costs() what it took: by timer queries, or where those lie
     /// (rasterizers on the CPU answer before the work is done) by the clock around a glFinish.
@@ -43,10 +45,22 @@ class Device {
     /// Throws Error if the driver reported one since the last call.
     void check(const std::string& pass);
 
+    /// Before `bytes` are asked of the driver: throws Error where its memory is the machine's (it
+    /// renders on the CPU) and there is less, since it might be killed for it later.
+    void check_room(const std::string& what, std::uint64_t bytes) const;
+    /// After: throws Error if the driver had no room for them, or reported any other error.
+    void check_allocation(const std::string& what, std::uint64_t bytes);
+
   private:
+    std::string place_of(const std::string& what) const;
+    /// The error and the driver's message, which are forgotten.
+    std::string said(unsigned error);
+
     std::string renderer_;
     int max_texture_px_ = 0, max_layers_ = 0;
-    bool has_timers_ = false;
+    std::uint64_t max_buffer_bytes_ = 0;
+    bool is_on_cpu_ = false;
+    std::string pass_;  // that runs; empty: none
     std::vector<PassCost> costs_;
     std::uint64_t allocated_bytes_ = 0;
     std::string message_;  // the driver's first error since the last check

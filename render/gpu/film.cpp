@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gpu/film.h"
 
+#include "formats/model/mip_sum.h"
 #include "render/film.h"
 #include "render/gpu/shader.h"
 #include "render/gpu/storage.h"
@@ -27,8 +28,10 @@ void copy_rgb(const std::vector<float>& rgba, float scale, Layer& layer) {
 
 }  // namespace
 
-Film make_film(Device& device, glm::ivec2 size_px, std::size_t lamps) {
-    const auto make = [&] { return make_texture(device, "the picture", GL_RGBA32F, size_px); };
+Film make_film(Device& device, glm::ivec2 size_px, std::size_t lamps, bool has_bias) {
+    const auto make = [&](GLenum format = GL_RGBA32F) {
+        return make_texture(device, "the picture", format, size_px);
+    };
     Film film;
     film.size_px = size_px;
     film.lamp_light = make();
@@ -37,6 +40,12 @@ Film make_film(Device& device, glm::ivec2 size_px, std::size_t lamps) {
     film.irradiance = make();
     for (std::size_t k = 0; k < lamps; ++k)
         film.of_lamp.push_back(make());
+    if (has_bias) {
+        film.finer_light = make();
+        film.finer_irradiance = make();
+        film.bias = make(GL_R32F);
+        film.add_bias = link_compute("render/shaders/bias.comp");
+    }
     film.accumulate = link_compute("render/shaders/accumulate.comp");
     film.tonemap = link_compute("render/shaders/tonemap.comp");
     clear(film);
@@ -48,6 +57,8 @@ void clear(Film& film) {
     clear_texture(film.irradiance);
     for (const Texture& of_lamp : film.of_lamp)
         clear_texture(of_lamp);
+    if (film.bias)
+        clear_texture(film.bias);
     film.weight = 0.0F;
     film.weight_squares = 0.0F;
 }
@@ -55,6 +66,23 @@ void clear(Film& film) {
 void begin_lamp(const Film& film) {
     clear_texture(film.lamp_light);
     clear_texture(film.lamp_irradiance);
+    bind_image(0, film.lamp_light, GL_READ_WRITE);
+    bind_image(1, film.lamp_irradiance, GL_READ_WRITE);
+}
+
+void begin_finer(const Film& film) {
+    clear_texture(film.finer_light);
+    clear_texture(film.finer_irradiance);
+    bind_image(0, film.finer_light, GL_READ_WRITE);
+    bind_image(1, film.finer_irradiance, GL_READ_WRITE);
+}
+
+void end_finer(const Film& film, float weight) {
+    bind_image(0, film.lamp_light, GL_READ_ONLY);
+    bind_image(1, film.finer_light, GL_READ_ONLY);
+    bind_image(2, film.bias, GL_READ_WRITE, GL_R32F);
+    glProgramUniform1f(film.add_bias.id(), 0, model::kBiasPerDifference * weight);
+    dispatch_2d(film.add_bias, film.size_px.x, film.size_px.y);
     bind_image(0, film.lamp_light, GL_READ_WRITE);
     bind_image(1, film.lamp_irradiance, GL_READ_WRITE);
 }
@@ -85,6 +113,12 @@ void read_film(const Film& film, float root, Picture& picture) {
     for (std::size_t lamp = 0; lamp < film.of_lamp.size(); ++lamp)
         copy_rgb(read_back(film.of_lamp[lamp], film.size_px, 4), scale,
                  picture.layers[kFirstLamp + lamp]);
+    if (!film.bias)
+        return;
+    std::vector<float>& bias = picture.layers.back().values;
+    bias = read_back(film.bias, film.size_px, 1);
+    for (float& value : bias)
+        value *= scale;
 }
 
 Texture tone_map(Device& device, const Film& film, ToneMap operation, double exposure_ev) {

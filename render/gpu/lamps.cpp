@@ -104,7 +104,8 @@ LightPasses make_light_passes(Device& device,
                               const RenderOptions& options,
                               bool has_tangents) {
     LightPasses passes;
-    passes.sums.shadows = SumShadows::Shares;
+    passes.sums.shadows =
+        options.shadow_weights == ShadowWeights::Pdis ? SumShadows::Pdis : SumShadows::Shares;
     passes.sums.more_defines = shadow_defines(options.shadow_maps);
     const auto any_lit = [&](bool has_shadows) {
         return std::any_of(plan.lamps.begin(), plan.lamps.end(), [&](const LampPlan& lamp) {
@@ -120,38 +121,60 @@ LightPasses make_light_passes(Device& device,
     return passes;
 }
 
-void add_light(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass) {
+void add_sums(
+    Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass, int q) {
+    const Lamp& lamp = pass.lamps.lamps[pass.lamp];
+    const bool has_shadows = pass.plan.lamps[pass.lamp].has_shadows;
+    const std::vector<SumSlab>& sums = on_card.files.at(lamp.file.get()).sums;
+    for (std::size_t s = 0; s < sums.size(); ++s) {
+        for (const SlabTextures& level : sums[s].levels)
+            place_slab(level, placement_of(lamp.slabs[s]));
+        device.run_pass("light sums", [&] {
+            if (has_shadows)
+                bind_shadows(on_card.shadows[pass.lamp], s);
+            add_light_sum(device, has_shadows ? passes.sums : passes.unshadowed_sums, sums[s], q,
+                          lamp.dim, pass.query.size_px);
+        });
+    }
+}
+
+void add_samples(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass) {
     const Lamp& lamp = pass.lamps.lamps[pass.lamp];
     const bool has_shadows = pass.plan.lamps[pass.lamp].has_shadows;
     const ShadowMaps& maps = on_card.shadows[pass.lamp];
-    FileOnCard& file = on_card.files.at(lamp.file.get());
-    std::vector<SampledSlab> sampled;
-    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
-        const SlabPlacement placement = placement_of(lamp.slabs[s]);
-        if (!file.sums.empty()) {
-            for (const SlabTextures& level : file.sums[s].levels)
-                place_slab(level, placement);
-            device.run_pass("light sums", [&] {
-                if (has_shadows)
-                    bind_shadows(maps, s);
-                add_light_sum(device, has_shadows ? passes.sums : passes.unshadowed_sums,
-                              file.sums[s], pass.options.q, lamp.dim, pass.query.size_px);
-            });
-        }
-        if (!file.sampled.empty()) {
-            place_slab(file.sampled[s], placement);
-            SampledSlab slab{&file.sampled[s], &lamp.slabs[s].prepared->slab, {}};
-            if (has_shadows)
-                slab.bind_shadows = [&maps, s] { bind_shadows(maps, s); };
-            sampled.push_back(std::move(slab));
-        }
+    const std::vector<SlabTextures>& textures = on_card.files.at(lamp.file.get()).sampled;
+    std::vector<SampledSlab> slabs;
+    for (std::size_t s = 0; s < textures.size(); ++s) {
+        place_slab(textures[s], placement_of(lamp.slabs[s]));
+        SampledSlab slab{&textures[s], &lamp.slabs[s].prepared->slab, {}};
+        if (has_shadows)
+            slab.bind_shadows = [&maps, s] { bind_shadows(maps, s); };
+        slabs.push_back(std::move(slab));
     }
-    if (sampled.empty())
+    if (slabs.empty())
         return;
     SampleQuery query = pass.query;
     query.dim = lamp.dim;
-    add_light_samples(device, has_shadows ? passes.samples : passes.unshadowed_samples, sampled,
+    add_light_samples(device, has_shadows ? passes.samples : passes.unshadowed_samples, slabs,
                       query);
+}
+
+int count_unmapped(Device& device,
+                   const Surfaces& surfaces,
+                   const Buffer& materials,
+                   const LampsOnCard& on_card,
+                   const LampPass& pass) {
+    const Lamp& lamp = pass.lamps.lamps[pass.lamp];
+    const FileOnCard& file = on_card.files.at(lamp.file.get());
+    int pixels = 0;
+    for (std::size_t s = 0; pass.plan.lamps[pass.lamp].has_shadows && s < lamp.slabs.size(); ++s) {
+        const SlabTextures& slab =
+            file.sums.empty() ? file.sampled[s] : file.sums[s].levels.front();
+        place_slab(slab, placement_of(lamp.slabs[s]));
+        pixels +=
+            count_unmapped({device, surfaces, materials, slab, on_card.shadows[pass.lamp], s});
+    }
+    return pixels;
 }
 
 }  // namespace nearfield::render::gpu

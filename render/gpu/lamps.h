@@ -39,7 +39,7 @@ struct LightPasses {
     LightSamples samples, unshadowed_samples;
 };
 
-/// One lamp's light at the surfaces that are bound, added to image units 0 and 1.
+/// A lamp whose light is added at the surfaces that are bound, to image units 0 and 1.
 struct LampPass {
     const Lamps& lamps;
     std::size_t lamp = 0;
@@ -53,6 +53,18 @@ LightPasses make_light_passes(Device& device,
                               const RenderOptions& options,
                               bool has_tangents);
 
-void add_light(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass);
+/// Its windowed sums, if there are any. q: as RenderOptions::q.
+void add_sums(
+    Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass, int q);
+/// Its samples, if any are drawn: of all its light, or beside sums of gloss alone.
+void add_samples(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass);
+
+/// Pixels between the planes of a lamp with shadows that some of its maps do not show
+/// (shadow_maps.h), slab by slab; 0 for one without. Changes what is bound.
+int count_unmapped(Device& device,
+                   const Surfaces& surfaces,
+                   const Buffer& materials,
+                   const LampsOnCard& on_card,
+                   const LampPass& pass);
 
 }  // namespace nearfield::render::gpu

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gpu/light_sum.h"
 
+#include "formats/files/error.h"
 #include "render/gpu/storage.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace nearfield::render::gpu {
@@ -13,7 +15,7 @@ namespace {
 
 // Locations in sum.comp.
 constexpr GLint kDim = 0, kMip = 1, kFinestTexels = 2, kIsFirst = 3;
-constexpr GLuint kLeftBinding = 7, kQuadsUnit = 20;
+constexpr GLuint kLeftBinding = 7, kQuadsUnit = 20, kTablesUnit = 21;
 constexpr std::size_t kWays = 2;  // by moments, by pieces
 
 SumSlab without_levels(const Slab& slab) {
@@ -21,6 +23,8 @@ SumSlab without_levels(const Slab& slab) {
     sum.has_radiance_weighting = slab.weighting == Weighting::Radiance;
     sum.texels = slab.texels;
     const auto cells = static_cast<int>(slab.profile.cells.size());
+    sum.cells = cells;
+    sum.window_texels_x = static_cast<float>(cells * slab.pitch_m.x / slab.texel_m().x);
     sum.ring_cells = cells * (slab.grid.y + cells - 1);
     return sum;
 }
@@ -38,19 +42,32 @@ std::vector<float> luminance_row(const Slab& slab, int image, int j) {
     return row;
 }
 
-// Layer by layer, so that no second copy of all images is made.
-Texture upload_quads(Device& device, const Slab& slab, int channels) {
+// Quads that a fetch may reach behind the last row (kQuads of sum_cell.glsl, and more).
+constexpr std::size_t kSpareQuads = 64;
+
+void check_quads(const Device& device, std::size_t quads) {
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    if (quads > static_cast<std::size_t>(most))
+        throw Error{"too large for a buffer of " + device.renderer(), "a lamp's images",
+                    fmt::format("at most {} times four texels", most), fmt::format("{}", quads)};
+}
+
+// Image by image, so that no second copy of all is made.
+Buffer upload_images(Device& device, const Slab& slab, int channels) {
     const int images = slab.image_count();
-    const glm::ivec2 size((slab.texels.x + 3) / 4, slab.texels.y);
-    Texture quads =
-        make_texture_array(device, "a lamp's images", GL_RGBA32F, size, channels * images);
     const auto width = static_cast<std::size_t>(slab.texels.x);
-    const std::size_t padded = 4 * static_cast<std::size_t>(size.x);
-    std::vector<float> layer(padded * static_cast<std::size_t>(size.y), 0.0F);
+    const std::size_t padded = (width + 3) / 4 * 4;
+    const std::size_t image_floats = padded * static_cast<std::size_t>(slab.texels.y);
+    const std::size_t floats =
+        image_floats * static_cast<std::size_t>(channels * images) + 4 * kSpareQuads;
+    check_quads(device, floats / 4);
+    Buffer buffer = make_zero_buffer(device, floats * sizeof(float), "a lamp's images");
+    std::vector<float> image(image_floats, 0.0F);
     for (int c = 0; c < channels; ++c)
         for (int m = 0; m < images; ++m) {
             for (int j = 0; j < slab.texels.y; ++j) {
-                float* row = layer.data() + static_cast<std::size_t>(j) * padded;
+                float* row = image.data() + static_cast<std::size_t>(j) * padded;
                 if (channels == slab.channels)
                     std::copy_n(slab.coeffs.data() + slab.image_offset(c, m) +
                                     static_cast<std::size_t>(j) * width,
@@ -58,10 +75,43 @@ Texture upload_quads(Device& device, const Slab& slab, int channels) {
                 else
                     std::ranges::copy(luminance_row(slab, m, j), row);
             }
-            upload_layers(quads, size, c * images + m, 1, 4, layer.data());
+            const std::size_t bytes = image_floats * sizeof(float);
+            glNamedBufferSubData(
+                buffer.id(),
+                static_cast<GLintptr>(static_cast<std::size_t>(c * images + m) * bytes),
+                static_cast<GLsizeiptr>(bytes), image.data());
         }
     device.check("a lamp's images");
-    return quads;
+    return buffer;
+}
+
+Texture view_quads(Device& device, const Buffer& images) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    Texture view(id);
+    glTextureBuffer(id, GL_RGBA32F, images.id());
+    device.check("a lamp's images");
+    return view;
+}
+
+// sum_tables of sum_view.glsl.
+Texture upload_tables(Device& device, const model::PreparedSlab& level) {
+    const Slab& slab = level.slab;
+    const int images = slab.image_count(), cells = static_cast<int>(slab.profile.cells.size());
+    const int width = std::max(images, std::max(slab.grid.x, slab.grid.y) + cells - 1);
+    const glm::ivec2 size(width, 3);
+    std::vector<glm::vec4> texels(static_cast<std::size_t>(width) * 3, glm::vec4(0.0F));
+    std::copy(level.lit.begin(), level.lit.end(), texels.begin());
+    for (const int axis : {0, 1}) {
+        const double pitch_m = slab.pitch_m[axis], center_m = slab.basis_center_m(0, 0)[axis];
+        for (int k = 0; k < slab.grid[axis] + cells - 1; ++k)
+            texels[static_cast<std::size_t>((1 + axis) * width + k)] =
+                glm::dvec4(center_m + (k - 0.5 * cells) * pitch_m,
+                           center_m + (k + 1 - 0.5 * cells) * pitch_m, center_m + k * pitch_m, 0.0);
+    }
+    Texture texture = make_texture(device, "a lamp's cells", GL_RGBA32F, size);
+    upload(texture, size, 4, &texels.front().x);
+    return texture;
 }
 
 void upload_level(Device& device,
@@ -72,7 +122,9 @@ void upload_level(Device& device,
     SlabNeeds needs;
     needs.has_color = has_color;
     sum.levels.push_back(upload_slab(device, level.slab, level.lit, nullptr, needs, placement));
-    sum.quads.push_back(upload_quads(device, level.slab, sum.levels.back().channels));
+    sum.images.push_back(upload_images(device, level.slab, sum.levels.back().channels));
+    sum.quads.push_back(view_quads(device, sum.images.back()));
+    sum.tables.push_back(upload_tables(device, level));
 }
 
 LightSumPrograms::Pair link(const LightSumPrograms& programs,
@@ -85,9 +137,11 @@ LightSumPrograms::Pair link(const LightSumPrograms& programs,
     if (programs.shadows != SumShadows::None) {
         defines.emplace_back("HAS_SHADOWS");
         defines.push_back(fmt::format("RING_CELLS {}", variant.ring_cells));
+        defines.push_back(fmt::format("CELLS {}", variant.cells));
     }
     if (programs.shadows == SumShadows::Pdis)
         defines.emplace_back("SHADOW_PDIS");
+    defines.push_back(fmt::format("QUADS {}", variant.quads));
     LightSumPrograms::Pair pair;
     pair.by_moments = link_compute("render/shaders/sum.comp", defines);
     defines.emplace_back("BY_PIECES");
@@ -95,11 +149,28 @@ LightSumPrograms::Pair link(const LightSumPrograms& programs,
     return pair;
 }
 
-const LightSumPrograms::Pair& programs_for(LightSumPrograms& programs, const SumSlab& slab) {
+// Quads that hold any window's columns, wherever in a quad it starts; no more than are worth their
+// registers. With shadows each cell of the basis function has its own.
+int quads_of(const SumSlab& slab, int q, bool has_shadows) {
+    constexpr int kMostQuads = 8, kMostOfAllCells = 32;
+    const float widest =
+        q == 0 ? slab.window_texels_x : std::min(slab.window_texels_x, static_cast<float>(q));
+    const float columns = std::ceil(std::min(widest, 4.0F * kMostQuads)) + 1.0F;
+    const int most =
+        has_shadows ? std::clamp(kMostOfAllCells / slab.cells, 1, kMostQuads) : kMostQuads;
+    return std::min(static_cast<int>(columns + 6.0F) / 4, most);
+}
+
+const LightSumPrograms::Pair& programs_for(LightSumPrograms& programs, const SumSlab& slab, int q) {
     const bool has_shadows = programs.shadows != SumShadows::None;
-    const LightSumPrograms::Variant variant{slab.levels.front().channels == 3,
-                                            slab.has_radiance_weighting,
-                                            has_shadows ? slab.ring_cells : 0};
+    LightSumPrograms::Variant variant{};
+    variant.has_color = slab.levels.front().channels == 3;
+    variant.has_radiance_weighting = slab.has_radiance_weighting;
+    variant.quads = quads_of(slab, q, has_shadows);
+    if (has_shadows) {
+        variant.cells = slab.cells;
+        variant.ring_cells = slab.ring_cells;
+    }
     const auto found = programs.linked.find(variant);
     if (found != programs.linked.end())
         return found->second;
@@ -145,7 +216,7 @@ void add_light_sum(Device& device,
                    int q,
                    float dim,
                    glm::ivec2 size_px) {
-    const LightSumPrograms::Pair& pair = programs_for(programs, slab);
+    const LightSumPrograms::Pair& pair = programs_for(programs, slab, q);
     if (!programs.left)
         programs.left = make_zero_buffer(device, kWays * sizeof(std::uint32_t));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLeftBinding, programs.left.id());
@@ -153,6 +224,7 @@ void add_light_sum(Device& device,
     for (int level = 0; level <= coarsest; ++level) {
         bind_slab(slab.levels[static_cast<std::size_t>(level)]);
         glBindTextureUnit(kQuadsUnit, slab.quads[static_cast<std::size_t>(level)].id());
+        glBindTextureUnit(kTablesUnit, slab.tables[static_cast<std::size_t>(level)].id());
         for (const Program* program : {&pair.by_moments, &pair.by_pieces}) {
             glProgramUniform1f(program->id(), kDim, dim);
             glProgramUniform3i(program->id(), kMip, level, coarsest, q);

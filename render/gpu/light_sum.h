@@ -4,9 +4,10 @@
 ///
 /// Precision: relative error against the sum in double 1e-4 or less wherever the light is not a
 /// thousandth of its surroundings', receivers whose plane cuts U included: all in float, but for
-/// the distance of U from the receiver's plane. Cost: a fetch and 8 multiply-adds for four texels,
-/// cell of a basis function and channel; receivers whose plane cuts U cost many times as much. What
-/// is long is done in several dispatches, after each of which 8 bytes are read back.
+/// the distance of U from the receiver's plane. Cost: a fetch and 8 multiply-adds for four texels
+/// of a window and channel, rows that meet two rows of U's cells twice; receivers whose plane cuts
+/// U cost many times as much. What is long is done in several dispatches, after each of which 8
+/// bytes are read back.
 #pragma once
 
 #include "formats/model/mip_sum.h"
@@ -32,12 +33,16 @@ enum class SumShadows {
 /// A slab and its coarser levels, as the sum reads them.
 struct SumSlab {
     std::vector<SlabTextures> levels;  // [0] exact; as PreparedMips::levels; without images
-    /// [level]: the images, RGBA32F array [channel * images + image]: a texel is four neighbors of
-    /// a row, so that a fetch brings four; rows end in zeros.
+    /// [level]: the images, floats [channel][image][row][column], and their view, RGBA32F: a fetch
+    /// brings four neighbors. Rows end in zeros.
+    std::vector<Buffer> images;
     std::vector<Texture> quads;
+    std::vector<Texture> tables;  // [level]: what sum_view.glsl says
     bool has_radiance_weighting = false;
-    glm::ivec2 texels{0};  // of level 0
-    int ring_cells = 0;    // n (H + n - 1): cells whose visibility is kept at once
+    glm::ivec2 texels{0};          // of level 0
+    int cells = 1;                 // n
+    float window_texels_x = 0.0F;  // of level 0: no window of it is wider
+    int ring_cells = 0;            // n (H + n - 1): cells whose visibility is kept at once
 };
 
 /// Uploads what the sum alone reads. Throws Error where a level passes the device's limits.
@@ -57,7 +62,8 @@ struct LightSumPrograms {
     Defines more_defines;  // put before every variant
     struct Variant {
         bool has_color, has_radiance_weighting;
-        int ring_cells;
+        int quads;              // of texels along x whose weights are kept
+        int cells, ring_cells;  // 0 without shadows
         auto operator<=>(const Variant&) const = default;
     };
     struct Pair {

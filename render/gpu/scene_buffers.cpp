@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gpu/scene_buffers.h"
 
-#include "formats/files/error.h"
 #include "render/gpu/storage.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
@@ -73,17 +70,6 @@ DrawRange append(const Mesh& mesh,
 }
 
 template <typename T>
-Buffer upload_values(Device& device, const char* what, const std::vector<T>& values) {
-    GLint64 most = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    const std::size_t bytes = values.size() * sizeof(T);
-    if (bytes > static_cast<std::size_t>(most))
-        throw Error{"a scene too large for the OpenGL renderer on " + device.renderer(), what,
-                    fmt::format("at most {} bytes", most), fmt::format("{}", bytes)};
-    return make_buffer_of(device, values);
-}
-
-template <typename T>
 std::size_t hash_of(const std::vector<T>& values) {
     return std::hash<std::string_view>{}(
         {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
@@ -109,7 +95,7 @@ Buffer upload_materials(Device& device, const std::vector<shared::Brdf>& brdfs) 
         blocks.push_back({glm::vec4(brdf.diffuse, brdf.exponent),
                           glm::vec4(brdf.specular, static_cast<float>(brdf.kind)),
                           glm::vec4(brdf.alpha, 0.0F, 0.0F), glm::vec4(brdf.cosines, 0.0F)});
-    return make_buffer_of(device, blocks);
+    return make_buffer_of(device, blocks, "materials");
 }
 
 SceneBuffers upload_scene(Device& device, const Scene& scene) {
@@ -120,11 +106,11 @@ SceneBuffers upload_scene(Device& device, const Scene& scene) {
         buffers.instances.push_back(append(scene.meshes[static_cast<std::size_t>(instance.mesh)],
                                            instance.world_from_mesh, buffers.has_tangents,
                                            vertices));
-    buffers.positions = upload_values(device, "vertices", vertices.positions);
-    buffers.normals = upload_values(device, "normals", vertices.normals);
+    buffers.positions = make_buffer_of(device, vertices.positions, "vertices");
+    buffers.normals = make_buffer_of(device, vertices.normals, "normals");
     if (buffers.has_tangents)
-        buffers.tangents = upload_values(device, "tangents", vertices.tangents);
-    buffers.indices = upload_values(device, "triangles", vertices.indices);
+        buffers.tangents = make_buffer_of(device, vertices.tangents, "tangents");
+    buffers.indices = make_buffer_of(device, vertices.indices, "triangles");
     buffers.array = make_array(buffers.positions, buffers.indices);
     // Unequal factors, so that two swapped buffers do not cancel.
     buffers.geometry_hash = hash_of(vertices.positions) * 31 + hash_of(vertices.indices);

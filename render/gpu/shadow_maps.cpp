@@ -140,19 +140,24 @@ Buffer make_cells(Device& device,
         values.push_back(block.eye_world_m_view);
         values.push_back(block.tangents);
     }
-    return make_buffer_of(device, values);
+    return make_buffer_of(device, values, "cells of a lamp's shadow maps");
 }
 
-void bind_for_measurement(const Surfaces& surfaces,
-                          const Buffer& materials,
-                          const SlabTextures& slab_textures,
-                          const ShadowMaps& maps,
-                          std::size_t slab,
-                          const Buffer& result) {
-    bind_surfaces(surfaces, materials);
-    bind_slab(slab_textures);
-    bind_shadows(maps, slab);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, result.id());
+/// Runs a shader of measurement over width x height; found: at binding 5.
+void measure(const std::string& shader,
+             const MeasuredShadows& of,
+             const Buffer& found,
+             glm::ivec2 size,
+             int cells) {
+    const Program program = link_compute(shader, shadow_defines(of.maps.key.options));
+    bind_surfaces(of.surfaces, of.materials);
+    bind_slab(of.slab_textures);
+    bind_shadows(of.maps, of.slab);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, found.id());
+    if (cells > 0)
+        glProgramUniform1i(program.id(), kCells, cells);
+    dispatch_2d(program, size.x, size.y);
+    of.device.check(shader);
 }
 
 }  // namespace
@@ -206,37 +211,20 @@ void bind_shadows(const ShadowMaps& maps, std::size_t slab) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, maps.cells[slab].id());
 }
 
-int count_unmapped(Device& device,
-                   const Surfaces& surfaces,
-                   const Buffer& materials,
-                   const SlabTextures& slab_textures,
-                   const ShadowMaps& maps,
-                   std::size_t slab) {
-    const Program program =
-        link_compute("render/shaders/shadow_unmapped.comp", shadow_defines(maps.key.options));
-    const Buffer count = make_zero_buffer(device, sizeof(glm::uvec4));
-    bind_for_measurement(surfaces, materials, slab_textures, maps, slab, count);
-    dispatch_2d(program, surfaces.size_px.x, surfaces.size_px.y);
-    device.check("shadow_unmapped");
+int count_unmapped(const MeasuredShadows& of) {
+    const Buffer count =
+        make_zero_buffer(of.device, sizeof(glm::uvec4), "the count of unmapped pixels");
+    measure("render/shaders/shadow_unmapped.comp", of, count, of.surfaces.size_px, 0);
     return static_cast<int>(read_buffer<std::uint32_t>(count, 1).front());
 }
 
-std::vector<float> cell_visibilities(Device& device,
-                                     const Surfaces& surfaces,
-                                     const Buffer& materials,
-                                     const SlabTextures& slab_textures,
-                                     const ShadowMaps& maps,
-                                     std::size_t slab) {
-    const Program program =
-        link_compute("render/shaders/shadow_visibility.comp", shadow_defines(maps.key.options));
-    const auto cells = static_cast<int>(maps.views.of_cell[slab].size());
-    const int pixels = surfaces.size_px.x * surfaces.size_px.y;
+std::vector<float> cell_visibilities(const MeasuredShadows& of) {
+    const auto cells = static_cast<int>(of.maps.views.of_cell[of.slab].size());
+    const int pixels = of.surfaces.size_px.x * of.surfaces.size_px.y;
     const std::size_t count = static_cast<std::size_t>(cells) * static_cast<std::size_t>(pixels);
-    const Buffer found = make_zero_buffer(device, count * sizeof(float));
-    bind_for_measurement(surfaces, materials, slab_textures, maps, slab, found);
-    glProgramUniform1i(program.id(), kCells, cells);
-    dispatch_2d(program, cells, pixels);
-    device.check("shadow_visibility");
+    const Buffer found =
+        make_zero_buffer(of.device, count * sizeof(float), "visibilities of cells");
+    measure("render/shaders/shadow_visibility.comp", of, found, {cells, pixels}, cells);
     return read_buffer<float>(found, count);
 }
 

@@ -73,23 +73,23 @@ Defines shadow_defines(const ShadowMapOptions& options);
 /// Binds a slab's maps where shadows.glsl expects them; beside bind_slab().
 void bind_shadows(const ShadowMaps& maps, std::size_t slab);
 
+/// A slab's maps and the surfaces that they are looked up at.
+struct MeasuredShadows {
+    Device& device;
+    const Surfaces& surfaces;
+    const Buffer& materials;
+    const SlabTextures& slab_textures;
+    const ShadowMaps& maps;
+    std::size_t slab = 0;
+};
+
 /// Pixels between the planes S and U, in the space that the slab may light, that some cell's map
 /// does not show: its light reaches them unshadowed. Beyond S there are none.
-int count_unmapped(Device& device,
-                   const Surfaces& surfaces,
-                   const Buffer& materials,
-                   const SlabTextures& slab_textures,
-                   const ShadowMaps& maps,
-                   std::size_t slab);
+int count_unmapped(const MeasuredShadows& of);
 
 /// What shadows.glsl says of every pixel and cell of a slab: visibility 0 ... 1, -1 where the cell
 /// has a map that does not show the pixel (it counts as lit), 1 where nothing is seen.
-/// [pixel][row of cells][column of cells]. For measurement: 4 bytes a pixel and cell.
-std::vector<float> cell_visibilities(Device& device,
-                                     const Surfaces& surfaces,
-                                     const Buffer& materials,
-                                     const SlabTextures& slab_textures,
-                                     const ShadowMaps& maps,
-                                     std::size_t slab);
+/// [pixel][row of cells][column of cells]. 4 bytes a pixel and cell.
+std::vector<float> cell_visibilities(const MeasuredShadows& of);
 
 }  // namespace nearfield::render::gpu

@@ -186,10 +186,12 @@ void bind_slab(const SlabTextures& slab) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, slab.edges.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, slab.lit.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, slab.totals.id());
-    const std::array<GLuint, 6> textures = {slab.coeffs.id(),   slab.luminance.id(),
-                                            slab.chroma.id(),   slab.area.id(),
-                                            slab.marginal.id(), slab.conditional.id()};
-    glBindTextures(8, static_cast<GLsizei>(textures.size()), textures.data());
+    const std::array<GLuint, 3> images = {slab.coeffs.id(), slab.luminance.id(), slab.chroma.id()};
+    glBindTextures(8, static_cast<GLsizei>(images.size()), images.data());
+    const std::array<GLuint, 2> cdfs = {slab.marginal.id(), slab.conditional.id()};
+    glBindTextures(12, static_cast<GLsizei>(cdfs.size()), cdfs.data());
+    constexpr GLuint kAreaImage = 7;
+    glBindImageTexture(kAreaImage, slab.area.id(), 0, GL_TRUE, 0, GL_READ_ONLY, GL_RG32F);
 }
 
 }  // namespace nearfield::render::gpu

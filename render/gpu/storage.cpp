@@ -29,9 +29,25 @@ void set_nearest(GLuint id) {
     glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-void count(Device& device, GLenum internal_format, glm::ivec2 size, int layers) {
-    device.count_allocation(bytes_per_texel(internal_format) * static_cast<std::size_t>(size.x) *
-                            static_cast<std::size_t>(size.y) * static_cast<std::size_t>(layers));
+std::uint64_t bytes_of(GLenum internal_format, glm::ivec2 size, int layers) {
+    return bytes_per_texel(internal_format) * static_cast<std::uint64_t>(size.x) *
+           static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(layers);
+}
+
+/// Storage for `bytes`, without content.
+Buffer make_storage(Device& device, std::size_t bytes, const std::string& what) {
+    if (bytes > device.max_buffer_bytes())
+        throw Error{"too large for a buffer of " + device.renderer(), what,
+                    fmt::format("at most {} bytes", device.max_buffer_bytes()),
+                    fmt::format("{}", bytes)};
+    device.check_room(what, bytes);
+    GLuint id = 0;
+    glCreateBuffers(1, &id);
+    Buffer buffer(id);
+    glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    device.check_allocation(what, bytes);
+    device.count_allocation(bytes);
+    return buffer;
 }
 
 GLenum format_of(int channels) {
@@ -65,26 +81,30 @@ Texture make_texture(Device& device,
                      GLenum internal_format,
                      glm::ivec2 size) {
     check_size(device, what, size, 1);
+    const std::uint64_t bytes = bytes_of(internal_format, size, 1);
+    device.check_room(what, bytes);
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);
     Texture texture(id);
     glTextureStorage2D(id, 1, internal_format, size.x, size.y);
+    device.check_allocation(what, bytes);
     set_nearest(id);
-    count(device, internal_format, size, 1);
-    device.check(what);
+    device.count_allocation(bytes);
     return texture;
 }
 
 Texture make_texture_array(
     Device& device, const std::string& what, GLenum internal_format, glm::ivec2 size, int layers) {
     check_size(device, what, size, layers);
+    const std::uint64_t bytes = bytes_of(internal_format, size, layers);
+    device.check_room(what, bytes);
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
     Texture texture(id);
     glTextureStorage3D(id, 1, internal_format, size.x, size.y, layers);
+    device.check_allocation(what, bytes);
     set_nearest(id);
-    count(device, internal_format, size, layers);
-    device.check(what);
+    device.count_allocation(bytes);
     return texture;
 }
 
@@ -111,26 +131,17 @@ std::vector<float> read_back(const Texture& texture, glm::ivec2 size, int channe
     return values;
 }
 
-Buffer make_buffer(Device& device, std::span<const std::byte> data) {
-    GLuint id = 0;
-    glCreateBuffers(1, &id);
-    Buffer buffer(id);
+Buffer make_buffer(Device& device, std::span<const std::byte> data, const std::string& what) {
     // No buffer is empty: drivers refuse those.
-    const std::size_t bytes = std::max<std::size_t>(data.size(), 16);
-    glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    Buffer buffer = make_storage(device, std::max<std::size_t>(data.size(), 16), what);
     if (!data.empty())
-        glNamedBufferSubData(id, 0, static_cast<GLsizeiptr>(data.size()), data.data());
-    device.count_allocation(bytes);
+        glNamedBufferSubData(buffer.id(), 0, static_cast<GLsizeiptr>(data.size()), data.data());
     return buffer;
 }
 
-Buffer make_zero_buffer(Device& device, std::size_t bytes) {
-    GLuint id = 0;
-    glCreateBuffers(1, &id);
-    Buffer buffer(id);
-    glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
-    glClearNamedBufferData(id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    device.count_allocation(bytes);
+Buffer make_zero_buffer(Device& device, std::size_t bytes, const std::string& what) {
+    Buffer buffer = make_storage(device, bytes, what);
+    glClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
     return buffer;
 }
 

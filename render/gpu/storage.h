@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Textures and buffers with storage that does not change its size. All are read by texelFetch:
-/// nearest, without mips unless said.
+/// Textures and buffers with storage that does not change its size. All are read by texelFetch or
+/// imageLoad: nearest, without mips unless said.
 #pragma once
 
 #include "render/gpu/device.h"
@@ -18,7 +18,8 @@ namespace nearfield::render::gpu {
 /// Bytes of one texel of the formats that are used here; 0 for others.
 std::size_t bytes_per_texel(GLenum internal_format);
 
-/// Throws Error naming `what` with the numbers where it passes the device's limits.
+/// All of these throw Error naming `what` with the numbers where it passes the device's limits, and
+/// with the bytes where there is no room for it.
 Texture make_texture(Device& device,
                      const std::string& what,
                      GLenum internal_format,
@@ -41,12 +42,16 @@ void upload(const Texture& texture, glm::ivec2 size, int channels, const float* 
 std::vector<float> read_back(const Texture& texture, glm::ivec2 size, int channels);
 
 /// Buffers that shaders read and write.
-Buffer make_buffer(Device& device, std::span<const std::byte> data);
-Buffer make_zero_buffer(Device& device, std::size_t bytes);
+Buffer make_buffer(Device& device,
+                   std::span<const std::byte> data,
+                   const std::string& what = "a buffer");
+Buffer make_zero_buffer(Device& device, std::size_t bytes, const std::string& what = "a buffer");
 
 template <typename T>
-Buffer make_buffer_of(Device& device, const std::vector<T>& values) {
-    return make_buffer(device, std::as_bytes(std::span(values)));
+Buffer make_buffer_of(Device& device,
+                      const std::vector<T>& values,
+                      const std::string& what = "a buffer") {
+    return make_buffer(device, std::as_bytes(std::span(values)), what);
 }
 
 template <typename T>

@@ -2,9 +2,6 @@
 // Light that a glossy lobe reflects, by multiple importance sampling of lamp and lobe with the
 // balance heuristic: as render/cpu/gloss.cpp; densities as formats/model/sampler_density.cpp.
 
-// Shifts of the lobe's samples are independent of the lamp's.
-const uint kLobeSeed = 0x9e3779b9u;
-
 float balance(float density, float other) { return density / (density + other); }
 
 int samples_of(float energy, int count);

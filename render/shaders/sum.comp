@@ -2,9 +2,12 @@
 // Adds the diffuse light of one slab by the windowed sum (formats/model/prepared.h), exact in float.
 //
 // Two programs run one after the other. Without BY_PIECES: receivers that all of U is in front of,
-// by moments, 2 multiply-adds a texel and cell. With BY_PIECES: those whose plane cuts cells of U,
-// cells in front by moments and the others pair by pair of pieces; with radiance weighting also
-// those that see texels too wide for one node, and all cells by pieces. What is not done yet of a pixel is in lamp_irradiance's alpha.
+// by moments, 2 multiply-adds a texel and row of cells. With BY_PIECES: those whose plane cuts cells
+// of U, cells in front by moments and the others pair by pair of pieces; with radiance weighting
+// also those that see texels too wide for one node, and all cells by pieces. What is not done yet of
+// a pixel is in lamp_irradiance's alpha.
+//
+// What the CPU tells: QUADS, of texels along x whose weights are kept; CELLS, n, with shadows.
 //
 // HAS_COLOR: the slab has three channels. IS_RADIANCE: radiance weighting. Shadows:
 // sum_visibility.glsl. q > 0: the slab is level mip.x of its images, averaged until windows span
@@ -26,7 +29,7 @@ layout(location = 3) uniform bool is_first;  // dispatch of this slab and level
 // Not 0: pixels are left to the program by moments, by pieces.
 layout(std430, binding = 7) restrict buffer Left { uint is_left[2]; };
 
-layout(binding = 20) uniform sampler2DArray sum_quads;
+layout(binding = 20) uniform samplerBuffer sum_quads;
 
 // Four neighbors of a row of an image, in every channel.
 #ifdef HAS_COLOR
@@ -37,19 +40,22 @@ struct Quad { vec4 r, g, b; };
 struct Quad { vec4 y; };
 #endif
 
-vec4 quad_of_channel(int channel, int image, int i, int j) {
-    i = min(i, textureSize(sum_quads, 0).x - 1);
-    return texelFetch(sum_quads, ivec3(i, j, channel * image_count() + image), 0);
+int quads_of_row() { return (slab.grid_texels.z + 3) / 4; }
+
+// Where quad i of row j of an image is, in its first channel.
+int place_of_quad(int image, int i, int j) {
+    return (image * slab.grid_texels.w + min(j, slab.grid_texels.w - 1)) * quads_of_row() + i;
 }
 
-Quad quad_at(int image, int i, int j) {
+Quad quad_at(int place) {
     Quad quad;
 #ifdef HAS_COLOR
-    quad.r = quad_of_channel(0, image, i, j);
-    quad.g = quad_of_channel(1, image, i, j);
-    quad.b = quad_of_channel(2, image, i, j);
+    int channel = image_count() * slab.grid_texels.w * quads_of_row();
+    quad.r = texelFetch(sum_quads, place);
+    quad.g = texelFetch(sum_quads, place + channel);
+    quad.b = texelFetch(sum_quads, place + 2 * channel);
 #else
-    quad.y = quad_of_channel(0, image, i, j);
+    quad.y = texelFetch(sum_quads, place);
 #endif
     return quad;
 }
@@ -64,30 +70,28 @@ Light quad_dot(Quad quad, vec4 weights) {
 
 Light texel_light(int image, int i, int j) {
     ivec4 is_it = ivec4(equal(ivec4(i & 3), ivec4(0, 1, 2, 3)));
-    return quad_dot(quad_at(image, i >> 2, j), vec4(is_it));
+    return quad_dot(quad_at(place_of_quad(image, i >> 2, j)), vec4(is_it));
 }
 
 #include "render/shaders/sum_cell.glsl"
 
-// model::level_for, receiver by receiver.
+// As model::level_for, receiver by receiver.
 int level_for(float height_m) {
     if (mip.z == 0)
         return 0;
-    float per_pitch = float(cell_count()) * abs(height_m) / (delta_m() + height_m);
     vec2 finest_texel_m = slab.s_min_texel_m.zw * exp2(-float(mip.x));
-    vec2 window = min(per_pitch * slab.pitch_delta_m.xy / finest_texel_m, vec2(finest_texels));
-    float widest = max(window.x, window.y);
-    int level = 0;
-    for (; level < mip.y && widest > float(mip.z); ++level)
-        widest *= 0.5;
-    return level;
+    float cells = float(cell_count());
+    float x = window_texels(cells, slab.pitch_delta_m.x, finest_texel_m.x, delta_m(), height_m);
+    float y = window_texels(cells, slab.pitch_delta_m.y, finest_texel_m.y, delta_m(), height_m);
+    return mip_level(max(min(x, float(finest_texels.x)), min(y, float(finest_texels.y))),
+                     float(mip.z), mip.y);
 }
 
 bool kernel_varies(SumView view) {
 #ifdef IS_RADIANCE
     vec2 texel_t = abs(vec2(view.x.s_keep + view.x.s_slope, view.y.s_keep + view.y.s_slope)) *
                    slab.s_min_texel_m.zw * view.scale;
-    vec2 cell_t = slab.pitch_delta_m.xy * view.x.cell_scale * view.scale;
+    vec2 cell_t = slab.pitch_delta_m.xy * vec2(cell_count(), 1) * view.x.cell_scale * view.scale;
     vec2 widest_t = min(texel_t, cell_t);
     return max(widest_t.x, widest_t.y) > kWidestCentroidTexelT * exp2(float(mip.x));
 #else
@@ -118,24 +122,35 @@ struct PartialSum {
     bool is_whole;
 };
 
-// Light through all cells of U but what was done before: basis column by basis column, cell by cell
-// along x, the weights of a block of texel columns kept for all that they meet along y.
+// Light through all cells of U but what was done before: basis column by basis column (by pieces
+// cell by cell along x), what weighs on a block of texel columns kept for all that they meet along y.
 PartialSum sum_of_cells(SumView view, int blocks_before, vec3 world_m, vec3 world_normal) {
     PartialSum sum;
     sum.light = Light(0.0);
     sum.blocks = 0;
-    for (int k = 0; k < slab.grid_texels.x && work < kMostWork; ++k) {
+    int k = 0;
+    do {
         see_columns_of(k, world_m, world_normal);
-        for (int cell_x = 0; cell_x < cell_count() && work < kMostWork; ++cell_x) {
-            CellColumn column = cell_column(view, k, cell_x);
-            int first = column.box.first / kBlock * kBlock;
+#ifdef BY_PIECES
+        const int cells = 1;
+#else
+        int cells = cell_count();
+#endif
+        int cell_x = 0;
+        do {
+            CellColumn column = cell_column(view, k, cell_x, cells);
+            int first = column.box.first / kAlign * kAlign;
             int count = is_empty(column.box) ? 0 : (column.box.last - first) / kBlock + 1;
             int block = clamp(blocks_before - sum.blocks, 0, count);
             sum.blocks += block;
-            for (; block < count && work < kMostWork; ++block, ++sum.blocks)
+            while (block < count && work < kMostWork) {
                 sum.light += sum_of_block(view, column, first + block * kBlock);
-        }
-    }
+                ++sum.blocks;
+                ++block;
+            }
+            cell_x += cells;
+        } while (cell_x < cell_count() && work < kMostWork);
+    } while (++k < slab.grid_texels.x && work < kMostWork);
     sum.light = max(sum.light, Light(0.0));
     sum.is_whole = work < kMostWork;
     return sum;

@@ -3,9 +3,16 @@
 #include "formats/shared/pieces.glsl.h"
 #include "render/shaders/slab.glsl"
 
-// Widest texel, in tangents, over which one node at the centroid stands for 1 / (1 + t^2)^2:
-// model::kWidestCentroidTexelT. On coarser levels what it errs is far below their bias.
-const float kWidestCentroidTexelT = 0.015;
+// What does not depend on the receiver, in a texture: llvmpipe reads buffers a pixel after the other.
+// Rows: of images, first texel with light (x, y) and one past the last (z, w), all 0: none; of U's
+// cells along x and along y, both edges (x, y) and the center of the basis function (z), in metres.
+layout(binding = 21) uniform sampler2D sum_tables;
+
+ivec4 lit_of(int image) { return ivec4(texelFetch(sum_tables, ivec2(image, 0), 0)); }
+vec2 cell_edges_m(int axis, int cell) {
+    return texelFetch(sum_tables, ivec2(cell, 1 + axis), 0).xy;
+}
+float center_m(int axis, int basis) { return texelFetch(sum_tables, ivec2(basis, 1 + axis), 0).z; }
 
 struct SumView {
     vec3 normal;
@@ -46,18 +53,18 @@ bool is_empty(AxisBox box) { return box.last < box.first; }
 // U's cells along an axis: W + n - 1 or H + n - 1.
 int cells_along(int axis) { return slab.grid_texels[axis] + cell_count() - 1; }
 
-// What is seen through one cell of U along an axis, and through all.
-AxisBox box_of_cell_x(SumView view, int cell) {
-    return axis_box(view.x, view.s_x, u_edge_m(0, cell), u_edge_m(0, cell + 1));
-}
+// What is seen through one cell of U along y, and through all along an axis.
 AxisBox box_of_cell_y(SumView view, int cell) {
-    return axis_box(view.y, view.s_y, u_edge_m(1, cell), u_edge_m(1, cell + 1));
+    vec2 edges_m = cell_edges_m(1, cell);
+    return axis_box(view.y, view.s_y, edges_m.x, edges_m.y);
 }
 AxisBox whole_box_x(SumView view) {
-    return axis_box(view.x, view.s_x, u_edge_m(0, 0), u_edge_m(0, cells_along(0)));
+    return axis_box(view.x, view.s_x, cell_edges_m(0, 0).x,
+                    cell_edges_m(0, cells_along(0) - 1).y);
 }
 AxisBox whole_box_y(SumView view) {
-    return axis_box(view.y, view.s_y, u_edge_m(1, 0), u_edge_m(1, cells_along(1)));
+    return axis_box(view.y, view.s_y, cell_edges_m(1, 0).x,
+                    cell_edges_m(1, cells_along(1) - 1).y);
 }
 
 // One axis of a basis function on one of its cells.
@@ -68,17 +75,17 @@ struct CellPhi {
 CellPhi cell_phi(int axis, int basis, int cell) {
     CellPhi phi;
     phi.a = slab.profile[cell].xyz;
-    phi.center_m = u_center_m(axis, basis);
+    phi.center_m = center_m(axis, basis);
     phi.inv_pitch = 1.0 / slab.pitch_delta_m[axis];
     return phi;
 }
 
-// Moments of texel i's part of a cell, with tangents counted from the cell's middle: about that
-// the cosine is known to all its digits, however far away the receiver is.
-CellMoments texel_moments(AxisView view, AxisTexels s, AxisBox box, CellPhi phi, int i) {
-    Interval part = texel_part(view, s, box.e_lo, box.e_hi, i);
-    view.t_origin = 0.5 * (box.e_lo + box.e_hi);
-    float lo = min(part.lo, box.e_hi);  // a texel beyond the box may be anywhere
+// Moments of texel i's part of a cell, with tangents counted from e_c, the middle of what is seen:
+// about that the cosine is known to all its digits, however far away the receiver is.
+CellMoments texel_moments(AxisView view, AxisTexels s, Interval cell, float e_c, CellPhi phi, int i) {
+    Interval part = texel_part(view, s, cell.lo, cell.hi, i);
+    view.t_origin = e_c;
+    float lo = min(part.lo, cell.hi);  // a texel beyond the cell may be anywhere
     return cell_moments(view, lo, max(lo, part.hi), phi.a.x, phi.a.y, phi.a.z,
                         phi.center_m, phi.inv_pitch);
 }

@@ -6,6 +6,12 @@
 // image's light by the plain mean over the cells that it covers (Lu, Pacanowski, Granier 2015,
 // 6.2). RING_CELLS: at least n (H + n - 1).
 // CELLS_FROM_BUFFER: visibility is read from a buffer [row][column] of U's cells, for tests.
+//
+// CELLS_APART, by moments: every cell's visibility is in the weights of its texels.
+#if defined(HAS_SHADOWS) && !defined(SHADOW_PDIS) && !defined(BY_PIECES)
+#define CELLS_APART
+#endif
+
 #ifdef HAS_SHADOWS
 
 #ifdef CELLS_FROM_BUFFER
@@ -32,21 +38,38 @@ void see_columns_of(int k, vec3 world_m, vec3 normal) {
                 cell_visibility(ivec2(column, row), world_m, normal);
 }
 
-// Of cell (cell_x, cell_y) of the support of the image in basis column k and row l.
-float visibility(int k, int l, int cell_x, int cell_y) {
+float visibility_of_cell(int column, int row) { return ring_of_cells[place_in_ring(column, row)]; }
+
+// Whether light arrives through any of the cells in a row that basis column k covers.
+bool is_any_seen(int k, int row) {
 #ifdef SHADOW_PDIS
+    bool is_seen = true;
+#else
+    bool is_seen = false;
+#endif
+    for (int column = k; column < k + cell_count(); ++column)
+        is_seen = is_seen || visibility_of_cell(column, row) > 0.0;
+    return is_seen;
+}
+
+// What weighs on the image in basis column k and row l, through cell (cell_x, cell_y) of its support.
+float visibility(int k, int l, int cell_x, int cell_y) {
+#if defined(SHADOW_PDIS)
     int n = cell_count();
     float sum = 0.0;
     for (int column = k; column < k + n; ++column)
         for (int row = l; row < l + n; ++row)
-            sum += ring_of_cells[place_in_ring(column, row)];
+            sum += visibility_of_cell(column, row);
     return sum / float(n * n);
+#elif defined(CELLS_APART)
+    return 1.0;
 #else
-    return ring_of_cells[place_in_ring(k + cell_x, l + cell_y)];
+    return visibility_of_cell(k + cell_x, l + cell_y);
 #endif
 }
 
 #else
 void see_columns_of(int k, vec3 world_m, vec3 normal) {}
+bool is_any_seen(int k, int row) { return true; }
 float visibility(int k, int l, int cell_x, int cell_y) { return 1.0; }
 #endif

@@ -2,6 +2,7 @@
 #include "render/metrics.h"
 
 #include "formats/files/error.h"
+#include "render/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -62,6 +63,34 @@ TEST(Metrics, LabDifferenceSkipsUnlitPixels) {
     const std::vector<float> reference = {1, 1, 1, 0, 0, 0};
     EXPECT_EQ(lab_difference(std::vector<float>{1, 1, 1, 5, 5, 5}, reference), 0.0);
     EXPECT_EQ(lab_difference(std::vector<float>{0, 0, 0}, std::vector<float>{0, 0, 0}), 0.0);
+}
+
+// Proves that a picture's error layer is what its luminances say, and dark where the reference is.
+TEST(Metrics, ComparedPicturesGetTheirErrorAsALayer) {
+    const auto picture = [](const std::vector<float>& gray) {
+        Picture made{{static_cast<int>(gray.size()), 1}, {{"", {"R", "G", "B"}, {}}}, {}};
+        for (const float value : gray)
+            made.layers[0].values.insert(made.layers[0].values.end(), 3, value);
+        return made;
+    };
+    Picture found = picture({1.1F, 1.6F, 4.0F, 100.0F});
+    const Picture reference = picture({1.0F, 2.0F, 4.0F, 0.003F});
+    const Comparison comparison = compare_pictures(found, reference);
+    ASSERT_EQ(found.layers.size(), 2U);
+    EXPECT_EQ(found.layers[1].name, "error");
+    constexpr float kTolerance = 1e-6F;
+    const float expected[] = {0.1F, -0.2F, 0.0F, 0.0F};
+    for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR(found.layers[1].values[k], expected[k], kTolerance);
+    EXPECT_EQ(comparison.radiance_y.count, 3U);
+    EXPECT_NEAR(comparison.radiance_y.largest, 0.2, 1e-6);
+    EXPECT_GT(comparison.lab, 0.0);
+    EXPECT_NE(summary(comparison).find("largest 20 %"), std::string::npos) << summary(comparison);
+
+    Picture small = picture({1.0F});
+    EXPECT_THROW(compare_pictures(small, reference), Error);
+    Picture empty{{4, 1}, {}, {}};
+    EXPECT_THROW(compare_pictures(empty, reference), Error);
 }
 
 }  // namespace

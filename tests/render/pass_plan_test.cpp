@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cpu/pass_plan.h"
+#include "render/pass_plan.h"
 
 #include "render/options.h"
 

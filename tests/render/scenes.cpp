@@ -125,6 +125,26 @@ Scene uneven_scene() {
     return scene;
 }
 
+Scene plain_scene() {
+    LightField lamp = one_window_lamp(0.1, 1.0F);
+    lamp.slabs[0].texels = {9, 7};
+    lamp.slabs[0].coeffs.resize(63);
+    for (std::size_t i = 0; i < 63; ++i)
+        lamp.slabs[0].coeffs[i] = static_cast<float>((i * 37) % 11);
+    Scene scene = floor_scene();
+    scene.luminaires = {write_lamp(lamp, "plain", pose({0.3, 0, 1}, kDown))};
+    return scene;
+}
+
+Scene with_second_lamp(Scene scene) {
+    LuminaireInstance second = scene.luminaires.front();
+    second.name = "second";
+    second.world_from_luminaire[3] += glm::dvec4(0.4, -0.3, 0.2, 0.0);
+    second.dim = 0.5;
+    scene.luminaires.push_back(second);
+    return scene;
+}
+
 Scene transformed(Scene scene, const glm::dmat4& matrix) {
     for (Instance& instance : scene.instances)
         instance.world_from_mesh = matrix * instance.world_from_mesh;

@@ -55,6 +55,12 @@ Scene half_covered();
 /// light.
 Scene uneven_scene();
 
+/// What calls for nothing: a gray Lambertian floor, a lamp of one channel.
+Scene plain_scene();
+
+/// The first lamp's file once more, named "second", elsewhere and dimmed.
+Scene with_second_lamp(Scene scene);
+
 /// The scene moved, lamps and cameras included.
 Scene transformed(Scene scene, const glm::dmat4& matrix);
 

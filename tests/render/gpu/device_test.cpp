@@ -51,6 +51,53 @@ TEST_F(DeviceTest, RefusesWhatPassesTheLimitsWithNumbers) {
     }
 }
 
+// 16 TiB: refused before or by the driver, with the pass and the bytes.
+TEST_F(DeviceTest, NamesWhatItHasNoMemoryFor) {
+    try {
+        device().run_pass("shading", [&] {
+            make_texture_array(device(), "a lamp's images", GL_RG32F,
+                               glm::ivec2(device().max_texture_px()), device().max_layers());
+        });
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what_, testing::HasSubstr("out of graphics memory"));
+        EXPECT_THAT(error.where, testing::HasSubstr("a lamp's images in pass 'shading' on "));
+        EXPECT_THAT(error.expected + error.got, testing::HasSubstr("4194304.0 MiB"));
+    }
+    // The pass is over.
+    EXPECT_THROW(make_texture_array(device(), "t", GL_R32F, {8, 8}, 1 << 20), Error);
+    EXPECT_NO_THROW(make_texture(device(), "t", GL_R32F, {8, 8}));
+}
+
+// The driver's own word for it, which a device without the machine's memory has alone.
+TEST_F(DeviceTest, SaysWhatTheDriverHadNoRoomFor) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    const Texture texture(id);
+    glTextureStorage3D(id, 1, GL_RGBA32F, device().max_texture_px(), device().max_texture_px(),
+                       device().max_layers());
+    try {
+        device().check_allocation("a lamp's images", std::uint64_t{3} << 20U);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.what_, "out of graphics memory");
+        EXPECT_THAT(error.where, testing::HasSubstr("a lamp's images on "));
+        EXPECT_THAT(error.expected, testing::HasSubstr("room for 3.0 MiB beside "));
+        EXPECT_THAT(error.got, testing::HasSubstr("out of memory"));
+    }
+    EXPECT_NO_THROW(device().check("after"));
+}
+
+TEST_F(DeviceTest, RefusesBuffersThatShadersCannotRead) {
+    try {
+        make_zero_buffer(device(), device().max_buffer_bytes() + 1, "energies");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.where, "energies");
+        EXPECT_EQ(error.got, std::to_string(device().max_buffer_bytes() + 1));
+    }
+}
+
 TEST_F(DeviceTest, TexturesKeepFloatsBitForBit) {
     std::vector<float> values(5 * 3);
     std::iota(values.begin(), values.end(), 1.0e-30F);

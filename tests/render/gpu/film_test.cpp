@@ -37,7 +37,7 @@ class FilmTest : public GlTest {
 };
 
 TEST_F(FilmTest, MeansOverPassesByWeightAndVariancesByItsSquare) {
-    Film film = make_film(device(), kSizePx, 2);
+    Film film = make_film(device(), kSizePx, 2, false);
     // Two passes, the second of three times the weight.
     add_lamp(film, 0, 1.0F, 0.04F, 1.0F);
     add_lamp(film, 1, 10.0F, 0.0F, 1.0F);
@@ -59,7 +59,7 @@ TEST_F(FilmTest, MeansOverPassesByWeightAndVariancesByItsSquare) {
 }
 
 TEST_F(FilmTest, ClearsToBlack) {
-    Film film = make_film(device(), kSizePx, 1);
+    Film film = make_film(device(), kSizePx, 1, false);
     add_lamp(film, 0, 1.0F, 1.0F, 1.0F);
     end_pass(film, 1.0F);
     clear(film);
@@ -73,7 +73,7 @@ TEST_F(FilmTest, ClearsToBlack) {
 // The displayed picture is the CPU's, one step of 255 apart at most: exp and pow differ in their
 // last bits.
 TEST_F(FilmTest, ToneMapsAsTheCpuDoes) {
-    Film film = make_film(device(), kSizePx, 1);
+    Film film = make_film(device(), kSizePx, 1, false);
     std::vector<float> light;
     for (std::size_t k = 0; k < kPixels; ++k) {
         const float x = std::exp2(0.25F * static_cast<float>(k) - 12.0F);

@@ -5,7 +5,7 @@
 #include "formats/files/error.h"
 #include "render/cpu/render.h"
 #include "render/metrics.h"
-#include "sample_data/reference_lamp.h"
+#include "tests/render/gpu/comparisons.h"
 #include "tests/render/pictures.h"
 #include "tests/render/scenes.h"
 
@@ -17,7 +17,10 @@
 namespace nearfield::render {
 namespace {
 
+using test::expect_light;
 using test::layer;
+using test::share_within;
+using test::with_second_lamp;
 
 RenderOptions small_options(Switch shadows) {
     RenderOptions options;
@@ -26,50 +29,11 @@ RenderOptions small_options(Switch shadows) {
     return options;
 }
 
-/// Share of values above 1e-3 of the largest that agree within a relative error.
-double share_within(const Layer& a, const Layer& reference, double relative) {
-    const float largest = *std::max_element(reference.values.begin(), reference.values.end());
-    std::size_t lit = 0, within = 0;
-    for (std::size_t k = 0; k < reference.values.size(); ++k) {
-        if (!(reference.values[k] > 1e-3F * largest))
-            continue;
-        ++lit;
-        const double error = std::abs(
-            static_cast<double>(a.values[k]) / static_cast<double>(reference.values[k]) - 1.0);
-        within += error <= relative ? 1U : 0U;
-    }
-    EXPECT_GT(lit, 1000U);
-    return static_cast<double>(within) / static_cast<double>(std::max<std::size_t>(lit, 1));
-}
-
-void expect_finite(const Picture& picture) {
-    for (const Layer& each : picture.layers)
-        EXPECT_TRUE(std::all_of(each.values.begin(), each.values.end(), [](float value) {
-            return std::isfinite(value);
-        })) << each.name;
-}
-
-const PassReport* cost_of(const RenderReport& report, PassId id) {
-    const auto found = std::find_if(report.costs.begin(), report.costs.end(),
-                                    [&](const PassReport& cost) { return cost.id == id; });
-    return found == report.costs.end() ? nullptr : &*found;
-}
-
-/// The first lamp's file once more, elsewhere and dimmed.
-Scene with_second_lamp(Scene scene) {
-    LuminaireInstance second = scene.luminaires.front();
-    second.name = "second";
-    second.world_from_luminaire[3] += glm::dvec4(0.4, -0.3, 0.2, 0.0);
-    second.dim = 0.5;
-    scene.luminaires.push_back(second);
-    return scene;
-}
-
 TEST(GlRender, UnshadowedSumIsTheCpus) {
     const Scene scene = test::uneven_scene();
     const RenderOptions options = small_options(Switch::Off);
     const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
-    expect_finite(gl.picture);
+    expect_light(gl.picture);
     EXPECT_GE(share_within(layer(gl.picture, ""), layer(cpu.picture, ""), 1e-3), 0.995);
     EXPECT_GE(share_within(layer(gl.picture, "irradiance"), layer(cpu.picture, "irradiance"), 1e-3),
               0.995);
@@ -87,22 +51,12 @@ TEST(GlRender, SamplersDrawTheCpusSamples) {
                                          model::Sampler::Uniform, model::Sampler::Pdis}) {
         options.sampler = sampler;
         const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
-        expect_finite(gl.picture);
+        expect_light(gl.picture);
         EXPECT_GE(share_within(layer(gl.picture, ""), layer(cpu.picture, ""), 1e-3), 0.995)
             << model::name_of(sampler);
         EXPECT_NEAR(gl.report.sampling.mean_rel / cpu.report.sampling.mean_rel, 1.0, 0.02)
             << model::name_of(sampler);
     }
-}
-
-/// The reference lamp over a floor, with sheets at two heights in its light: 13 x 11 cells.
-Scene sheets_under_lamp() {
-    Scene scene = test::floor_scene();
-    scene.luminaires = {test::write_lamp(sample_data::make_reference_lamp(), "reference",
-                                         test::pose({0.0, 0.0, 1.5}, test::kDown))};
-    test::add_blocker(scene, "high", {0.2, 0.1, 0.5}, {0.3F, 0.3F});
-    test::add_blocker(scene, "low", {-0.25, -0.1, 0.1}, {0.25F, 0.4F});
-    return scene;
 }
 
 // A pixel's camera samples share its samples, as on the CPU: sigma is no smaller for them.
@@ -113,44 +67,6 @@ TEST(GlRender, CameraSamplesShareAPixelsSamples) {
     options.samples_per_pixel = 4;
     const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
     EXPECT_NEAR(gl.report.sampling.mean_rel / cpu.report.sampling.mean_rel, 1.0, 0.1);
-}
-
-TEST(GlRender, ShadowMapsAreNearTracedShadows) {
-    const Scene scene = sheets_under_lamp();
-    RenderOptions options = small_options(Switch::Auto);
-    options.samples = 256;
-    const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
-    const Rendered unshadowed = render_gl(scene, small_options(Switch::Off));
-    expect_finite(gl.picture);
-    const Layer& reference = layer(cpu.picture, "");
-    const double error = lab_difference(layer(gl.picture, "").values, reference.values);
-    const double without = lab_difference(layer(unshadowed.picture, "").values, reference.values);
-    EXPECT_LE(error, 1.2);  // the papers' figure for their own scene
-    EXPECT_GT(without, 4.0 * error) << "shadows that hardly matter prove little";
-    RecordProperty("lab_error", std::to_string(error));
-}
-
-TEST(GlRender, WhatTheSceneDoesNotCallForHasNoPassAndNoBuffer) {
-    Scene scene = test::uneven_scene();
-    const Rendered off = render_gl(scene, small_options(Switch::Off));
-    EXPECT_EQ(cost_of(off.report, PassId::ShadowMaps), nullptr);
-    EXPECT_EQ(cost_of(off.report, PassId::Samples), nullptr);
-    EXPECT_EQ(cost_of(off.report, PassId::BoxEnergies), nullptr);
-    const Rendered on = render_gl(scene, small_options(Switch::On));
-    ASSERT_NE(cost_of(on.report, PassId::ShadowMaps), nullptr);
-    EXPECT_GT(cost_of(on.report, PassId::ShadowMaps)->bytes, 0.0);
-    EXPECT_GT(cost_of(on.report, PassId::ShadowMaps)->time_s, 0.0);
-}
-
-// Nothing stands between: forced shadows change nothing.
-TEST(GlRender, ForcedShadowsOfABareFloorChangeNothing) {
-    Scene scene = test::floor_scene();
-    scene.luminaires = test::uneven_scene().luminaires;
-    const Rendered automatic = render_gl(scene, small_options(Switch::Auto));
-    EXPECT_FALSE(automatic.report.plan.has_shadows);
-    const Rendered forced = render_gl(scene, small_options(Switch::On));
-    EXPECT_TRUE(forced.report.plan.has_shadows);
-    EXPECT_LE(test::difference(layer(automatic.picture, ""), layer(forced.picture, "")), 1e-6);
 }
 
 TEST(GlRender, LampsOfOneFileShareItsTextures) {
@@ -175,6 +91,134 @@ TEST(GlRender, PassesAreAddedUntilTheErrorIsReached) {
     EXPECT_TRUE(rendered.report.is_error_reached);
     EXPECT_LE(rendered.report.sampling.error_rel(), 0.02);
     EXPECT_GT(rendered.report.passes, 1);
+}
+
+// Passes of 16, 48 and 36 samples, weighted by them, are the CPU's: light and sigma.
+TEST(GlRender, UnequalPassesAreTheCpus) {
+    const Scene scene = with_second_lamp(test::uneven_scene());
+    RenderOptions options = small_options(Switch::Off);
+    options.sampler = model::Sampler::Systematic;
+    options.error_rel = 1e-5;
+    options.samples = 100;
+    const Rendered cpu = render_cpu(scene, options), gl = render_gl(scene, options);
+    EXPECT_EQ(gl.report.passes, 3);
+    EXPECT_EQ(gl.report.samples, 100.0);
+    EXPECT_FALSE(gl.report.is_error_reached);
+    EXPECT_GE(share_within(layer(gl.picture, ""), layer(cpu.picture, ""), 1e-3), 0.995);
+    EXPECT_NEAR(gl.report.sampling.mean_rel / cpu.report.sampling.mean_rel, 1.0, 0.02);
+}
+
+/// A clock that stands still but for what it is told: each reading is a step.
+struct FakeClock {
+    double step_s = 0.0;
+    int readings = 0;
+
+    RenderHooks hooks() {
+        RenderHooks result;
+        result.clock_s = [this] { return step_s * ++readings; };
+        return result;
+    }
+};
+
+// By a clock of its own: a picture within a time goes on until its limit of samples, ends with the
+// time, and always has its first pass, which a report of too little time owns up to.
+TEST(GlRender, PassesEndWithTheTime) {
+    const Scene scene = test::uneven_scene();
+    RenderOptions options = small_options(Switch::Off);
+    options.size_px = {24, 18};
+    options.sampler = model::Sampler::Uniform;
+    options.samples = 512;
+    options.time_s = 1.0;
+    double samples = 0.0;
+    for (const double step_s : {3.0, 0.15, 0.06, 1e-6}) {
+        FakeClock clock{step_s};
+        const RenderReport report = render_gl(scene, options, clock.hooks()).report;
+        EXPECT_GE(report.samples, samples) << step_s;
+        samples = report.samples;
+        if (step_s > 1.0) {
+            EXPECT_EQ(report.passes, 1);
+            EXPECT_GT(report.time_s, options.time_s);
+            EXPECT_THAT(summary(report, options, options.size_px),
+                        testing::HasSubstr(" of 1000 ms bought an error of "));
+        } else {
+            // Beyond the time only the readings at the end.
+            EXPECT_LE(report.time_s, options.time_s + 2.0 * step_s) << step_s;
+            EXPECT_GT(report.passes, 1) << step_s;
+        }
+    }
+    EXPECT_EQ(samples, 512.0);
+}
+
+/// Luminance, pixel by pixel.
+std::vector<double> luminances(const Picture& picture) {
+    std::vector<double> y;
+    const std::vector<float>& rgb = layer(picture, "").values;
+    for (std::size_t k = 0; k < rgb.size(); k += 3)
+        y.push_back(0.2126 * static_cast<double>(rgb[k]) +
+                    0.7152 * static_cast<double>(rgb[k + 1]) +
+                    0.0722 * static_cast<double>(rgb[k + 2]));
+    return y;
+}
+
+/// The uneven lamp with images so fine that windows span up to 6 texels, two materials glossy.
+Scene fine_scene(bool is_glossy) {
+    Scene scene = test::uneven_scene();
+    LightField lamp = read_lightfield(scene.luminaires[0].path);
+    Slab& slab = lamp.slabs[0];
+    slab.texels = {64, 48};
+    slab.coeffs.resize(std::size_t{3} * 6 * 64 * 48);
+    for (std::size_t i = 0; i < slab.coeffs.size(); ++i)
+        slab.coeffs[i] = static_cast<float>((i / 16 * 7919) % 101);
+    const glm::dmat4 pose = scene.luminaires[0].world_from_luminaire;
+    scene.luminaires = {test::write_lamp(lamp, "fine", pose)};
+    if (is_glossy)
+        scene.materials[0] = {"varnish", {0.6F, 0.5F, 0.4F}, 0.0F, 0.4F};
+    return scene;
+}
+
+// bias_bound is 1.5 |E_q - E_2q|, as pictures at q and at 2q show it, shadows included and gloss
+// left out; it counts as error.
+TEST(GlRender, CoarseSumsBoundTheirBias) {
+    for (const bool is_glossy : {false, true}) {
+        const Scene scene = fine_scene(is_glossy);
+        RenderOptions options = small_options(Switch::Auto);
+        options.size_px = {32, 24};
+        options.samples = 4;
+        const auto at_q = [&](int q) {
+            options.q = q;
+            return render_gl(scene, options);
+        };
+        const Rendered exact = at_q(0), coarse = at_q(2), finer = at_q(4);
+        EXPECT_EQ(exact.picture.layers.back().name, "lamp.fine");
+        const std::vector<double> y = luminances(coarse.picture), y_2q = luminances(finer.picture),
+                                  y_exact = luminances(exact.picture);
+        const std::vector<float>& bound = layer(coarse.picture, "bias_bound").values;
+        double largest = 0.0, error = 0.0, bounds = 0.0;
+        for (std::size_t k = 0; k < y.size(); ++k)
+            largest = std::max(largest, y[k]);
+        for (std::size_t k = 0; k < y.size(); ++k) {
+            EXPECT_NEAR(static_cast<double>(bound[k]), 1.5 * std::abs(y[k] - y_2q[k]),
+                        2e-6 * largest);
+            error += std::abs(y[k] - y_exact[k]);
+            bounds += static_cast<double>(bound[k]);
+        }
+        EXPECT_GT(bounds, 0.0);
+        EXPECT_LE(error, bounds);
+        EXPECT_GT(coarse.report.sampling.bias_mean_rel, 0.0);
+        EXPECT_THAT(summary(coarse.report, options, options.size_px), testing::HasSubstr("bias "));
+    }
+}
+
+// Where the bias alone is more than the error that is asked for, more samples do not help.
+TEST(GlRender, NoPassIsAddedWhereTheBiasIsTheError) {
+    RenderOptions options = small_options(Switch::Off);
+    options.size_px = {24, 18};
+    options.q = 2;
+    options.error_rel = 1e-4;
+    const RenderReport report = render_gl(fine_scene(true), options).report;
+    EXPECT_EQ(report.passes, 1);
+    EXPECT_FALSE(report.is_error_reached);
+    EXPECT_GT(report.sampling.bias_mean_rel, 1e-4);
 }
 
 }  // namespace

@@ -61,13 +61,13 @@ std::vector<float> mapped(Device& device,
                           const ShadowMapOptions& options,
                           std::size_t slab) {
     update_shadow_maps(device, run.pass, run.buffers, run.lamps, 0, options, run.maps);
-    return cell_visibilities(device, run.surfaces.surfaces, run.buffers.materials,
-                             textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab);
+    return cell_visibilities({device, run.surfaces.surfaces, run.buffers.materials,
+                              textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab});
 }
 
 int count_unmapped(Device& device, const ShadowRun& run, std::size_t slab) {
-    return count_unmapped(device, run.surfaces.surfaces, run.buffers.materials,
-                          textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab);
+    return count_unmapped({device, run.surfaces.surfaces, run.buffers.materials,
+                           textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab});
 }
 
 TracedCells trace_cells(const ShadowRun& run, int side, std::size_t slab_index) {
