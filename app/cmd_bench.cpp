@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/files.h"
+#include "app/bench/papers.h"
 #include "app/bench/shadows.h"
 #include "app/bench/summary.h"
 #include "app/bench/sweeps.h"
@@ -16,15 +17,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 
 namespace nearfield::app {
 namespace {
 
-enum class What { Accuracy, Shadows };
+enum class What { Accuracy, Shadows, Papers };
 
-constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows";
+constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows",
+                     *kOfPapers = "bench papers";
 
 struct BenchCommand {
     What what = What::Accuracy;
@@ -32,6 +35,7 @@ struct BenchCommand {
     bool json = false;
     bench::SweepOptions options;
     bench::ShadowSweepOptions shadows;
+    bench::PapersOptions papers;
 };
 
 LightField read_lamp(const BenchCommand& command) {
@@ -49,7 +53,7 @@ std::vector<model::Receiver> read_receivers(const BenchCommand& command) {
     return receivers;
 }
 
-bench::Setup describe(const BenchCommand& command,
+bench::Setup setup_of(const BenchCommand& command,
                       const LightField& lamp,
                       std::size_t receivers,
                       const std::string& command_line) {
@@ -70,7 +74,7 @@ void run_accuracy(const BenchCommand& command, const std::string& command_line) 
     check_outputs({command.page, command.csv}, {command.input, command.points});
     const LightField lamp = read_lamp(command);
     const std::vector<model::Receiver> receivers = read_receivers(command);
-    const bench::Setup setup = describe(command, lamp, receivers.size(), command_line);
+    const bench::Setup setup = setup_of(command, lamp, receivers.size(), command_line);
     ProgressLine progress("bench accuracy");
     const bench::Findings findings =
         bench::run_sweeps(lamp.slabs, receivers, command.options,
@@ -107,12 +111,33 @@ void run_shadows(const BenchCommand& command, const std::string& command_line) {
                     findings.results.size(), findings.time_s, findings.device));
 }
 
-// What only the other of the two takes.
-void refuse_foreign_options(const CLI::App& command, const std::string& foreign) {
+void run_papers(const BenchCommand& command, const std::string& command_line) {
+    if (!command.input.empty() || command.json)
+        throw CLI::ValidationError(
+            kOfPapers, "expected neither a file nor --json: it makes its lamps, and writes a CSV");
+    bench::PapersOptions options = command.papers;
+    options.folder = command.page;
+    ProgressLine progress(kOfPapers);
+    const bench::PapersFindings findings = bench::run_papers(
+        options,
+        [&](const std::string& what, double fraction) { progress.update(fraction, what); });
+    progress.finish();
+    const auto path = [&](const char* name) {
+        return (std::filesystem::path(options.folder) / name).string();
+    };
+    write_file(bench::as_csv(findings), path("papers.csv"));
+    bench::write_page(findings, {command_line, machine(), options.quick}, path("papers.html"));
+    say(fmt::format("{}: {} settings measured in {:.0f} s\n", path("papers.html"),
+                    findings.rows.size(), findings.time_s));
+}
+
+// What only others of them take.
+void refuse_foreign_options(const CLI::App& command, const std::string& own) {
     for (const CLI::Option* option : command.get_options())
-        if (option->count() > 0 && option->get_group() == foreign)
-            throw CLI::ValidationError(option->get_name(),
-                                       fmt::format("expected no option of {}", foreign));
+        if (option->count() > 0 && option->get_group().starts_with("bench ") &&
+            option->get_group() != own)
+            throw CLI::ValidationError(
+                option->get_name(), fmt::format("expected no option of {}", option->get_group()));
 }
 
 // The call as it can be repeated: options that were given, in the order of the help.
@@ -199,6 +224,23 @@ void add_shadow_options(CLI::App& sub, bench::ShadowSweepOptions& options) {
     add_sizes(sub, "--map-px", options.map_px, 16384, "sizes of a map, pixels a side");
 }
 
+struct Bench {
+    const char* name;
+    void (*run)(const BenchCommand&, const std::string& command_line);
+};
+
+Bench of_what(What what) {
+    switch (what) {
+        case What::Shadows:
+            return {kOfShadows, run_shadows};
+        case What::Papers:
+            return {kOfPapers, run_papers};
+        case What::Accuracy:
+            break;
+    }
+    return {kOfAccuracy, run_accuracy};
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app) {
@@ -209,16 +251,20 @@ void add_bench(CLI::App& app) {
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
          "nearfield bench accuracy --samplers sum,pdis --sweeps samplers --k 16,63,1000 -o "
          "pdis.html",
-         "nearfield bench shadows scene.gltf -o shadows.html"});
-    add_choice(*sub, "what", c->what, {{"accuracy", What::Accuracy}, {"shadows", What::Shadows}},
-               "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene")
+         "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers"});
+    add_choice(*sub, "what", c->what,
+               {{"accuracy", What::Accuracy}, {"shadows", What::Shadows}, {"papers", What::Papers}},
+               "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene; "
+               "papers: a published paper's figures again, on lamps of its sizes")
         ->required();
     sub->add_option(
            "input", c->input,
            "accuracy: luminaire or light field, .exr, by default the reference lamp (nearfield "
            "simulate reference); shadows: scene, .gltf or .glb")
         ->type_name("FILE");
-    sub->add_option("-o,--output", c->page, "page to write, .html")->required()->type_name("FILE");
+    sub->add_option("-o,--output", c->page, "page to write, .html; papers: folder")
+        ->required()
+        ->type_name("FILE");
     sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
     sub->option_defaults()->group(kOfAccuracy);
     CLI::Option* points = sub->add_option(
@@ -230,10 +276,15 @@ void add_bench(CLI::App& app) {
     add_sweep_options(*sub, c->options);
     sub->option_defaults()->group(kOfShadows);
     add_shadow_options(*sub, c->shadows);
+    sub->option_defaults()->group(kOfPapers);
+    sub->add_flag("--quick", c->papers.quick, "small lamps and frames: seconds, no conclusions");
+    add_number(*sub, "--frame-px", c->papers.frame_px, 16, 4096, "PX",
+               "width of the samplers' frames, 240 and of quick runs 32 by default; others follow")
+        ->default_str("");
     sub->callback([c, sub] {
-        const bool is_shadows = c->what == What::Shadows;
-        refuse_foreign_options(*sub, is_shadows ? kOfAccuracy : kOfShadows);
-        (is_shadows ? run_shadows : run_accuracy)(*c, command_line(*sub));
+        const auto [own, run] = of_what(c->what);
+        refuse_foreign_options(*sub, own);
+        run(*c, command_line(*sub));
     });
 }
 

@@ -157,7 +157,7 @@ report::Section truth(const DemoResult& result) {
     return section;
 }
 
-report::Section cost(const DemoResult& result) {
+report::Section cost_section(const DemoResult& result) {
     report::Section section{"Stages", {}, {}, {}, {}};
     report::Table table{"Time, memory (of the process, at most so far) and error estimate",
                         {"stage", "time", "memory", "error estimate"},
@@ -220,13 +220,9 @@ void write_demo_report(const DemoOptions& options,
     page.title = "Two headlights on a road";
     page.summary = "Made by " + program_version() +
                    ": from a lamp's radiance to a picture, with errors and costs.";
-    page.sections = {about(),
-                     pictures(options, result),
-                     lamp(options, result),
-                     wall(result),
-                     truth(result),
-                     cost(result),
-                     provenance(result, command_line)};
+    page.sections = {
+        about(),       pictures(options, result), lamp(options, result),           wall(result),
+        truth(result), cost_section(result),      provenance(result, command_line)};
     report::write_page(page, path_in(options, "report.html"));
     write_file(to_json(result, command_line).dump(2) + "\n", path_in(options, "report.json"));
 }
