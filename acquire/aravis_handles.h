@@ -32,10 +32,12 @@ class Failure {
     void check() const {
         if (error_ == nullptr)
             return;
-        const bool is_lost =
-            error_->domain == ARV_DEVICE_ERROR && (error_->code == ARV_DEVICE_ERROR_TIMEOUT ||
-                                                   error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
-                                                   error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
+        const bool is_lost = error_->domain == ARV_DEVICE_ERROR &&
+                             (error_->code == ARV_DEVICE_ERROR_TIMEOUT ||
+                              error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
+                              error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR ||
+                              // A camera that started anew in between does not know us.
+                              error_->code == ARV_DEVICE_ERROR_PROTOCOL_ERROR_ACCESS_DENIED);
         if (is_lost)
             throw DeviceLost{what_, where_, "the device to answer", error_->message};
         throw Error{what_, where_, "", error_->message};

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <numeric>
 
 namespace nearfield::acquire {
 namespace {
@@ -21,14 +21,14 @@ bool is_well_exposed(const Signal& signal, std::size_t k) {
     return share >= kWellExposedLow && share <= kWellExposedHigh;
 }
 
-// The brightest pixel's signal in a microsecond, from the shortest exposure, which saturates last.
-double brightest_per_us(std::span<const Signal> bracket) {
-    const auto shortest = std::min_element(
-        bracket.begin(), bracket.end(),
-        [](const Signal& a, const Signal& b) { return a.exposure_us < b.exposure_us; });
-    const auto& values = shortest->frame->values;
-    return (*std::max_element(values.begin(), values.end()) - shortest->black_dn) /
-           shortest->exposure_us;
+constexpr double kBinsPerOctave = 4;
+constexpr double kLowestOctave = -40;  // of DN / us: a DN in 12 days
+
+int bin_of(double brightness) {
+    if (!(brightness > 0))
+        return 0;
+    const double bin = (std::log2(brightness) - kLowestOctave) * kBinsPerOctave;
+    return static_cast<int>(std::clamp(bin, 0.0, ExposureTally::kBins - 1.0));
 }
 
 }  // namespace
@@ -48,22 +48,42 @@ std::optional<double> exposure_ratio(const Signal& a, const Signal& b) {
     return sum_b / sum_a;
 }
 
-double share_exposed_twice(std::span<const Signal> bracket, double darkest_share) {
-    if (bracket.empty())
-        return 1;
-    const double least_per_us = darkest_share * brightest_per_us(bracket);
-    const Signal& longest = *std::max_element(
-        bracket.begin(), bracket.end(),
-        [](const Signal& a, const Signal& b) { return a.exposure_us < b.exposure_us; });
+void tally(std::span<const Signal> bracket, ExposureTally& counts) {
+    const std::size_t pixels = bracket.empty() ? 0 : bracket.front().frame->values.size();
+    for (std::size_t k = 0; k < pixels; ++k) {
+        double signal_dn = 0, exposure_us = 0;
+        int well = 0;
+        for (const Signal& signal : bracket) {
+            well += is_well_exposed(signal, k) ? 1 : 0;
+            if (signal_of(signal, k) > kWellExposedHigh * signal.frame->range_dn())
+                continue;
+            signal_dn += signal_of(signal, k);
+            exposure_us += signal.exposure_us;
+        }
+        // Too bright for all: at the top, where it counts as missed.
+        const auto bin = static_cast<std::size_t>(exposure_us > 0 ? bin_of(signal_dn / exposure_us)
+                                                                  : ExposureTally::kBins - 1);
+        ++counts.pixels[bin];
+        counts.twice[bin] += well >= 2 ? 1U : 0U;
+    }
+}
+
+double share_exposed_twice(const ExposureTally& counts, double darkest_share) {
+    constexpr double kHotShare = 1e-4;
+    const std::size_t all =
+        std::accumulate(counts.pixels.begin(), counts.pixels.end(), std::size_t{0});
+    int brightest = ExposureTally::kBins - 1;
+    for (std::size_t above = 0; brightest > 0; --brightest) {
+        above += counts.pixels[static_cast<std::size_t>(brightest)];
+        if (static_cast<double>(above) > kHotShare * static_cast<double>(all))
+            break;
+    }
+    const int darkest =
+        brightest + static_cast<int>(std::ceil(std::log2(darkest_share) * kBinsPerOctave));
     std::size_t lit = 0, twice = 0;
-    for (std::size_t k = 0; k < longest.frame->values.size(); ++k) {
-        if (signal_of(longest, k) < least_per_us * longest.exposure_us)
-            continue;
-        ++lit;
-        const auto well = std::count_if(bracket.begin(), bracket.end(), [k](const Signal& signal) {
-            return is_well_exposed(signal, k);
-        });
-        twice += well >= 2 ? 1U : 0U;
+    for (int bin = std::max(darkest, 1); bin < ExposureTally::kBins; ++bin) {
+        lit += counts.pixels[static_cast<std::size_t>(bin)];
+        twice += counts.twice[static_cast<std::size_t>(bin)];
     }
     return lit == 0 ? 1 : static_cast<double>(twice) / static_cast<double>(lit);
 }

@@ -5,6 +5,8 @@
 
 #include "formats/capture/frame.h"
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -30,9 +32,21 @@ struct Signal {
 /// an error of half a DN in black would show.
 std::optional<double> exposure_ratio(const Signal& a, const Signal& b);
 
-/// The share of pixels that are well exposed in at least two frames, among those that are brighter
-/// than `darkest_share` of the brightest; 1 where none is.
-double share_exposed_twice(std::span<const Signal> bracket, double darkest_share);
+/// Pixels of brackets, counted by brightness: quarters of an octave of DN / us.
+struct ExposureTally {
+    static constexpr int kBins = 240;
+    std::array<std::size_t, kBins> pixels{};  // all
+    std::array<std::size_t, kBins> twice{};   // well exposed in at least two frames
+};
+
+/// Adds a bracket's pixels. A pixel's brightness is its signal in all exposures that do not exceed
+/// the well exposed part of the range, over their time.
+void tally(std::span<const Signal> bracket, ExposureTally& counts);
+
+/// The share of pixels that are well exposed at least twice, among those not darker than
+/// `darkest_share` of the brightest (of which one in ten thousand is left out: hot pixels); 1 where
+/// there is none.
+double share_exposed_twice(const ExposureTally& counts, double darkest_share);
 
 /// How many frames a camera is late: the index of the first frame after a change of exposure that
 /// shows the new level, where `before_dn` is the old level and the last of `after_dn` the new one.

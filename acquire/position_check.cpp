@@ -12,7 +12,7 @@ namespace nearfield::acquire {
 using capture::Shot;
 using capture::ShotKind;
 
-PositionCheck::PositionCheck(const capture::Capture& capture) : plan_(capture.header.plan) {
+PositionCheck::PositionCheck(const capture::Capture& capture) : plan_(capture.header.plan.value()) {
     for (const auto& [number, record] : capture.frames)
         add_level(record.shot, record.mean_dn);
     figures_ = {};
@@ -85,9 +85,7 @@ void PositionCheck::finish_position() {
         numbers.push_back(kept.shot.number);
     }
     if (bracket.size() == plan_.bracket.exposures_us.size())
-        figures_.least_exposed_twice =
-            std::min(figures_.least_exposed_twice,
-                     share_exposed_twice(bracket, plan_.bracket.darkest_share));
+        tally(bracket, figures_.exposures);
     for (std::size_t k = 0; k + 1 < bracket.size(); ++k) {
         const std::optional<double> ratio = exposure_ratio(bracket[k], bracket[k + 1]);
         if (!ratio)

@@ -20,7 +20,7 @@ struct Finding {
 
 /// What was seen so far in a session.
 struct CheckFigures {
-    double least_exposed_twice = 1;
+    ExposureTally exposures;  // of all complete brackets
     double worst_ratio_rel = 0;
     int ratios = 0;
     double worst_drift_rel = 0;
@@ -30,7 +30,7 @@ struct CheckFigures {
 class PositionCheck {
   public:
     /// Levels of darks and the first look at the reference are taken from what the capture already
-    /// holds.
+    /// holds. It must have a plan.
     explicit PositionCheck(const capture::Capture& capture);
 
     /// A frame in the order of the plan. Judges the position before where this is the next one.

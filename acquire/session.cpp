@@ -87,6 +87,7 @@ Exposed expose_fresh(Session& session, const Shot& shot) {
             throw Error{"the camera gives no whole new frame", name_of(shot),
                         fmt::format("one in {} tries", kMostTries), complaint};
         ++session.result.retaken;
+        session.bench.stage->arrange(shot, session.options.should_stop);
         note(session, "frame taken again", name_of(shot) + ", " + complaint);
     }
 }
@@ -126,7 +127,7 @@ void judge(Session& session) {
 
 void open_bench(Session& session) {
     session.bench = session.options.open();
-    session.bench.camera->configure(session.capture.header.plan.camera);
+    session.bench.camera->configure(session.capture.header.plan->camera);
     session.gain_db = session.bench.camera->gain_db();
     session.exposure_us = 0;
 }
@@ -191,11 +192,11 @@ void find_latency(Session& session, const std::vector<Shot>& shots) {
     const auto light = std::find_if(shots.begin(), shots.end(), [](const Shot& shot) {
         return shot.kind == ShotKind::Light || shot.kind == ShotKind::Reference;
     });
-    if (light == shots.end() || session.capture.header.plan.bracket.exposures_us.size() < 2)
+    if (light == shots.end() || session.capture.header.plan->bracket.exposures_us.size() < 2)
         return;
     session.bench.stage->arrange(*light, session.options.should_stop);
     session.result.discarded_frames =
-        camera_latency(*session.bench.camera, session.capture.header.plan.bracket.exposures_us,
+        camera_latency(*session.bench.camera, session.capture.header.plan->bracket.exposures_us,
                        session.options.should_stop);
     session.exposure_us = 0;
 }
@@ -240,7 +241,8 @@ SessionResult run_session(capture::CaptureWriter& writer,
     }
     session.queue.flush();
     const CheckFigures& figures = session.checks.figures();
-    session.result.least_exposed_twice = figures.least_exposed_twice;
+    session.result.share_exposed_twice =
+        share_exposed_twice(figures.exposures, capture.header.plan->bracket.darkest_share);
     session.result.worst_ratio_rel = figures.worst_ratio_rel;
     session.result.ratios = figures.ratios;
     session.result.worst_drift_rel = figures.worst_drift_rel;

@@ -33,9 +33,8 @@ struct SessionResult {
     int reconnects = 0;
     int discarded_frames = 0;  // after every change of exposure
     double time_s = 0;
-    double megabytes = 0;  // raw, of the kept frames
-    double least_exposed_twice =
-        1;                       // worst position's share of lit pixels well exposed at least twice
+    double megabytes = 0;            // raw, of the kept frames
+    double share_exposed_twice = 1;  // of pixels not darker than the plan's darkest_share
     double worst_ratio_rel = 0;  // largest deviation of true exposure ratios from those asked for
     int ratios = 0;              // that could be checked
     double worst_drift_rel = 0;  // of the lamp, against the first look at the reference
@@ -43,7 +42,7 @@ struct SessionResult {
 
 /// Takes what is missing from a capture.
 ///
-/// In      writer, and the capture as read before.
+/// In      writer, and the capture as read before, with its plan.
 /// Throws  Stopped (all frames so far are on disk); Error with the frames so far on disk where the
 /// disk is full,
 ///         the camera is gone for longer than reconnect_s, clamps or ignores exposure, shows

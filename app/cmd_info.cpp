@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.h"
 #include "app/describe.h"
+#include "app/describe_capture.h"
 #include "app/options.h"
 #include "app/output.h"
 
@@ -41,8 +42,21 @@ void explain_luminaire(const InfoCommand& command, const FileKind& kind) {
     }
 }
 
+void explain_capture(const InfoCommand& command) {
+    const capture::Capture capture = capture::read_capture(command.input);
+    std::optional<std::vector<int>> damaged;
+    if (command.verify)
+        damaged = capture::damaged_frames(command.input, capture, {});
+    print(command.json ? describe(capture, damaged).dump(2) + "\n"
+                       : capture_text(capture, damaged));
+    if (damaged && !damaged->empty())
+        throw CLI::RuntimeError(3);
+}
+
 void run(const InfoCommand& command) {
-    if (holds_luminaire(command.input))
+    if (capture::holds_capture(command.input))
+        explain_capture(command);
+    else if (holds_luminaire(command.input))
         explain_luminaire(command, read_kind(command.input));
     else
         print_description(command, describe(read_picture(command.input)));
@@ -55,11 +69,14 @@ void add_info(CLI::App& app) {
     CLI::App* sub = add_command(app, "info", "Explains a file that this program writes",
                                 {"nearfield info headlight.luminaire.exr --verify",
                                  "nearfield info headlight.luminaire.exr --json"});
-    sub->add_option("file", c->input, "light field, luminaire or picture, .exr")
+    sub->add_option("file", c->input,
+                    "light field, luminaire or picture, .exr; or a capture's folder")
         ->required()
         ->type_name("FILE");
-    sub->add_flag("--verify", c->verify,
-                  "check every stored table against the coefficients; exit 3 if one differs");
+    sub->add_flag(
+        "--verify", c->verify,
+        "check every stored table against the coefficients, or every frame against its checksum; "
+        "exit 3 if one differs");
     sub->add_flag("--json", c->json, "as JSON (docs/formats.md)");
     sub->callback([c] { run(*c); });
 }

@@ -16,5 +16,9 @@ void add_info(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_lab(CLI::App& app);
+void add_devices(CLI::App& app);
+void add_preview(CLI::App& app);
+void add_capture(CLI::App& app);
 
 }  // namespace nearfield::app

@@ -62,6 +62,10 @@ void add_commands(CLI::App& app) {
     nearfield::app::add_probe(app);
     nearfield::app::add_render(app);
     nearfield::app::add_bench(app);
+    nearfield::app::add_devices(app);
+    nearfield::app::add_preview(app);
+    nearfield::app::add_capture(app);
+    nearfield::app::add_lab(app);
     add_help(app);
 }
 

@@ -15,6 +15,7 @@ ALLOWED = {
     "formats/files": [],
     "formats/capture": ["formats/files"],
     "formats/shared": [],
+    "formats/photos": ["formats/files", "formats/capture"],
     "formats/model": ["formats/files", "formats/shared"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
@@ -35,7 +36,8 @@ LIBRARIES = {
     r"embree": ["render/cpu"],
     r"epoxy/": ["render/gpu", "tests/render/gpu"],
     r"hwy/": ["formats/model"],
-    r"arv\.h": ["acquire", "tests/sample_data"],
+    r"OpenImageIO/": ["formats/photos"],
+    r"arv\.h": ["acquire", "tests/sample_data", "tests/acquire"],
     r"CLI/": ["app"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
 }

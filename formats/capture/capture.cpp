@@ -27,9 +27,11 @@ CaptureHeader read_header(const std::string& path) {
         throw Error{"cannot read capture", path, fmt::format("version 1 ... {}", kCaptureVersion),
                     fmt::format("{}", version)};
     CaptureHeader header;
-    header.plan = plan_from(field.at("plan"));
-    if (header.plan.bracket.exposures_us.empty())
-        throw Error{"bad capture", path + ".plan", "exposures_us", "none"};
+    if (field.has("plan")) {
+        header.plan = plan_from(field.at("plan"));
+        if (header.plan->bracket.exposures_us.empty())
+            throw Error{"bad capture", path + ".plan", "exposures_us", "none"};
+    }
     header.response = meaning_of(kResponses, field.at("response"));
     header.provenance = provenance_from(field.at("provenance"));
     return header;
@@ -73,10 +75,11 @@ void read_log(const std::string& path, Capture& capture) {
 }  // namespace
 
 std::string header_text(const CaptureHeader& header) {
-    const Json document = {{"nearfield_capture", kCaptureVersion},
-                           {"response", word_for(kResponses, header.response)},
-                           {"plan", json_of(header.plan)},
-                           {"provenance", json_of(header.provenance)}};
+    Json document = {{"nearfield_capture", kCaptureVersion},
+                     {"response", word_for(kResponses, header.response)},
+                     {"provenance", json_of(header.provenance)}};
+    if (header.plan)
+        document["plan"] = json_of(*header.plan);
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -127,7 +130,9 @@ std::vector<int> damaged_frames(const std::string& folder,
 
 std::vector<Shot> missing_shots(const Capture& capture) {
     std::vector<Shot> missing;
-    for (const Shot& shot : shots_of(capture.header.plan))
+    if (!capture.header.plan)
+        return missing;
+    for (const Shot& shot : shots_of(*capture.header.plan))
         if (!capture.frames.contains(shot.number))
             missing.push_back(shot);
     return missing;

@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ enum class Response { Linear, Unknown };
 
 /// What a capture is; its exposures are known (found by metering where the plan said so).
 struct CaptureHeader {
-    Plan plan;
+    std::optional<Plan> plan;  // none for imported photographs: nothing is missing
     Response response = Response::Linear;
     Provenance provenance;
 };
@@ -60,7 +61,7 @@ std::vector<int> damaged_frames(const std::string& folder,
                                 const Capture& capture,
                                 const std::function<void(double fraction)>& progress);
 
-/// Shots of the plan that have no frame, in the plan's order.
+/// Shots of the plan that have no frame, in the plan's order; none where there is no plan.
 std::vector<Shot> missing_shots(const Capture& capture);
 
 /// The one writer of a capture, while it lives: a second one is refused.

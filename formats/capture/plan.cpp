@@ -86,11 +86,9 @@ std::vector<double> exposures_from(const JsonField& field) {
 
 BracketPlan bracket_from(const JsonField& plan) {
     BracketPlan bracket;
-    if (plan.has("exposures_us")) {
+    bracket.is_auto = !plan.has("exposures_us");
+    if (!bracket.is_auto)
         bracket.exposures_us = exposures_from(plan.at("exposures_us"));
-        return bracket;
-    }
-    bracket.is_auto = true;
     if (!plan.has("bracket"))
         return bracket;
     const JsonField field = plan.at("bracket");
@@ -233,10 +231,9 @@ Json json_of(const Plan& plan) {
                                            plan.camera.region_size_px.y};
     if (!plan.bracket.exposures_us.empty())
         document["exposures_us"] = plan.bracket.exposures_us;
-    else
-        document["bracket"] = {{"least_us", plan.bracket.least_us},
-                               {"most_us", plan.bracket.most_us},
-                               {"darkest_share", plan.bracket.darkest_share}};
+    document["bracket"] = {{"least_us", plan.bracket.least_us},
+                           {"most_us", plan.bracket.most_us},
+                           {"darkest_share", plan.bracket.darkest_share}};
     return document;
 }
 

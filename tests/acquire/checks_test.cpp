@@ -56,14 +56,18 @@ TEST(ExposedTwice, CountsPixels) {
         made.values = std::move(values);
         return made;
     };
-    // The light of four pixels: 4, 1, 0.25 and (left out as too dark) 0.001 per us.
+    // The light of four pixels: 4, 1, 0.25 and (hardly any) 0.001 DN / us.
     const capture::Frame a = frame({400, 100, 25, 0}), b = frame({1600, 400, 100, 0}),
                          c = frame({4095, 1600, 400, 1});
     const std::vector<Signal> bracket = {{&a, 0, 100}, {&b, 0, 400}, {&c, 0, 1600}};
     // Well exposed is 205 ... 3276: pixel 0 in a and b, pixel 1 in b and c, pixel 2 in c alone.
-    EXPECT_NEAR(share_exposed_twice(bracket, 0.01), 2.0 / 3.0, 1e-12);
-    EXPECT_NEAR(share_exposed_twice(bracket, 0.2), 1, 1e-12);
-    EXPECT_NEAR(share_exposed_twice(std::span(bracket).first(2), 0.2), 0.5, 1e-12);
+    ExposureTally all, two;
+    tally(bracket, all);
+    tally(std::span(bracket).first(2), two);
+    EXPECT_NEAR(share_exposed_twice(all, 0.03), 2.0 / 3.0, 1e-12);
+    EXPECT_NEAR(share_exposed_twice(all, 0.2), 1, 1e-12);
+    EXPECT_NEAR(share_exposed_twice(two, 0.2), 0.5, 1e-12);
+    EXPECT_NEAR(share_exposed_twice(ExposureTally{}, 0.2), 1, 1e-12);
 }
 
 TEST(ExposureLatency, IsTheFirstNewFrame) {

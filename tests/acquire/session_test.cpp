@@ -21,12 +21,13 @@ class Session : public testing::Test {
 
     static capture::CaptureHeader header() {
         capture::CaptureHeader header;
-        header.plan.grid = {3, 2};
-        header.plan.pitch_m = {0.016, 0.016};
-        header.plan.basis = "bspline";
-        header.plan.darks = 2;
-        header.plan.bracket.exposures_us = {300, 900, 2700};
-        header.plan.drift_every = 2;
+        header.plan.emplace();
+        header.plan->grid = {3, 2};
+        header.plan->pitch_m = {0.016, 0.016};
+        header.plan->basis = "bspline";
+        header.plan->darks = 2;
+        header.plan->bracket.exposures_us = {300, 900, 2700};
+        header.plan->drift_every = 2;
         return header;
     }
 

@@ -19,11 +19,12 @@ class CaptureFolder : public testing::Test {
 
     static CaptureHeader header() {
         CaptureHeader header;
-        header.plan.grid = {2, 1};
-        header.plan.pitch_m = {0.016, 0.016};
-        header.plan.basis = "bspline";
-        header.plan.darks = 1;
-        header.plan.bracket.exposures_us = {100, 400};
+        header.plan.emplace();
+        header.plan->grid = {2, 1};
+        header.plan->pitch_m = {0.016, 0.016};
+        header.plan->basis = "bspline";
+        header.plan->darks = 1;
+        header.plan->bracket.exposures_us = {100, 400};
         header.provenance.program = program_version();
         return header;
     }
@@ -51,7 +52,7 @@ class CaptureFolder : public testing::Test {
     void write_most() {
         CaptureWriter writer = CaptureWriter::create(folder, header());
         writer.add(SessionRecord{1, "2026-01-01T00:00:00Z", "nearfield", "v", "m", "s", 0});
-        const std::vector<Shot> shots = shots_of(header().plan);
+        const std::vector<Shot> shots = shots_of(*header().plan);
         for (std::size_t k = 0; k + 1 < shots.size(); ++k)
             writer.add(frame(static_cast<int>(k)), record(shots[k]));
     }
@@ -63,7 +64,7 @@ class CaptureFolder : public testing::Test {
 TEST_F(CaptureFolder, TellsWhatWasWritten) {
     write_most();
     const Capture capture = read_capture(folder);
-    EXPECT_EQ(json_of(capture.header.plan), json_of(header().plan));
+    EXPECT_EQ(json_of(*capture.header.plan), json_of(*header().plan));
     EXPECT_EQ(capture.sessions.size(), 1U);
     ASSERT_EQ(capture.frames.size(), 5U);
     const FrameRecord& record = capture.frames.at(3);
@@ -112,7 +113,7 @@ TEST_F(CaptureFolder, FindsDamagedAndMissingFrames) {
 
 TEST_F(CaptureFolder, TakesRejectedFramesAgain) {
     write_most();
-    const std::vector<Shot> shots = shots_of(header().plan);
+    const std::vector<Shot> shots = shots_of(*header().plan);
     {
         CaptureWriter writer = CaptureWriter::reopen(folder);
         writer.add(RejectRecord{{2, 3}, "the lamp drifts"});

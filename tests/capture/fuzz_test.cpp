@@ -36,15 +36,16 @@ void fuzz(const std::string& valid, const std::function<void(const std::string&)
 
 CaptureHeader small_header() {
     CaptureHeader header;
-    header.plan.grid = {2, 2};
-    header.plan.pitch_m = {0.016, 0.016};
-    header.plan.basis = "bspline";
-    header.plan.bracket.exposures_us = {100, 400};
+    header.plan.emplace();
+    header.plan->grid = {2, 2};
+    header.plan->pitch_m = {0.016, 0.016};
+    header.plan->basis = "bspline";
+    header.plan->bracket.exposures_us = {100, 400};
     return header;
 }
 
 TEST(CaptureFuzz, PlansAreReadOrRefused) {
-    fuzz(json_of(small_header().plan).dump(2), [](const std::string& text) {
+    fuzz(json_of(*small_header().plan).dump(2), [](const std::string& text) {
         const Json document = parse_json(text, "plan.json");
         shots_of(plan_from({document, "plan.json"}));
     });
@@ -68,7 +69,7 @@ TEST(CaptureFuzz, LogsAreReadOrRefused) {
         Frame frame;
         frame.size_px = {4, 4};
         frame.values.assign(16, 5);
-        for (const Shot& shot : shots_of(small_header().plan)) {
+        for (const Shot& shot : shots_of(*small_header().plan)) {
             FrameRecord record;
             record.shot = shot;
             writer.add(frame, record);

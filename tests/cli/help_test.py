@@ -4,7 +4,8 @@ import re
 
 from program import ProgramTest, main, run
 
-COMMANDS = ["demo", "simulate", "convert", "pack", "info", "probe", "render", "bench", "help"]
+COMMANDS = ["demo", "simulate", "convert", "pack", "info", "probe", "render", "bench", "devices", "preview", "capture", "lab",
+            "help"]
 
 
 class Help(ProgramTest):
