@@ -21,12 +21,12 @@ inline sample_data::Bench small_bench() {
     bench.filter.pitch_m = {0.03, 0.025};
     bench.filter.center_m = {0.004, -0.003};
     bench.filter.transmission = {0.9, 0.8, 0.7};
-    bench.filter.tilt_deg = {1.0, -2.0};
+    bench.filter.tilt_deg = {6.0, -8.0};
     bench.filter.stage_scale = {1.02, 0.97};
     bench.filter.stage_skew_deg = 2.0;
     bench.screen.min_m = {-0.24, -0.15};
     bench.screen.max_m = {0.24, 0.10};
-    bench.screen.tilt_deg = {2.0, 1.5};
+    bench.screen.tilt_deg = {10.0, 8.0};
     bench.screen.reflectance = {0.7, 0.8, 0.9};
     bench.screen.lobe_share = 0.3;
     bench.camera.size_px = {40, 30};
