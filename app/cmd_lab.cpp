@@ -159,13 +159,37 @@ void add_serve(CLI::App& lab) {
     sub->callback([c] { run(*c); });
 }
 
+struct TruthCommand {
+    std::string bench, output;
+};
+
+void add_truth(CLI::App& lab) {
+    auto c = std::make_shared<TruthCommand>();
+    CLI::App* sub =
+        add_command(lab, "truth",
+                    "Writes what a virtual bench really is: to compare a measurement's result with",
+                    {"nearfield lab truth bench_near.json -o bench_near.truth.json"});
+    sub->add_option("bench", c->bench, "the bench, .json")->required()->type_name("BENCH");
+    sub->add_option(
+           "-o,--output", c->output,
+           "random errors as drawn, fluxes, the optics' estimated error; no stage reads it")
+        ->required()
+        ->type_name("FILE.json");
+    sub->callback([c] {
+        check_outputs({c->output}, {c->bench});
+        sample_data::write_truth(*prepare(c->bench), c->output);
+    });
+}
+
 }  // namespace
 
 void add_lab(CLI::App& app) {
     CLI::App* sub = add_command(app, "lab", "Simulates the laboratory: a camera on the network",
-                                {"nearfield lab serve bench_near.json"});
+                                {"nearfield lab serve bench_near.json",
+                                 "nearfield lab truth bench_near.json -o bench_near.truth.json"});
     sub->require_subcommand(1);
     add_serve(*sub);
+    add_truth(*sub);
 }
 
 }  // namespace nearfield::app

@@ -109,6 +109,14 @@ class CaptureTest(ProgramTest):
         self.refused(1, "capture", "plan.json", "-o", "whole")
         self.refused(2, "capture", "-o", "other")
 
+    def test_without_a_wire_the_frames_are_the_same(self):
+        with served(ADDRESS + "13", "--fast"):
+            self.done("capture", plan(ADDRESS + "13"), "-o", "wire")
+        self.done("capture", plan("bench:bench.json", "direct.json"), "-o", "direct")
+        self.assert_equal_captures("wire", "direct")
+        self.done("lab", "truth", "bench.json", "-o", "truth.json")
+        self.assertTrue(json.loads(pathlib.Path("truth.json").read_text()))
+
     def test_lost_packets_lose_no_frame(self):
         with served(ADDRESS + "2", "--fast"):
             self.done("capture", plan(ADDRESS + "2"), "-o", "clean")
