@@ -2,10 +2,13 @@
 #include "acquire/aravis_device.h"
 
 #include "acquire/aravis_camera.h"
+#include "formats/files/provenance.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 namespace nearfield::acquire {
 namespace {
@@ -38,12 +41,20 @@ std::string id_of(const std::string& name) {
     return camera == found.end() ? name : camera->id;
 }
 
+// A program that was killed keeps control until its heartbeat is missed, 3 s with most cameras.
 void require_control(const Device& device) {
+    constexpr double kHeartbeats_s = 6, kBetweenTries_s = 0.2;
     if (!ARV_IS_GV_DEVICE(device.device()))
         return;
-    if (arv_gv_device_is_controller(ARV_GV_DEVICE(device.device())) == 0)
-        throw Error{"cannot open camera", device.name, "control over it",
-                    "another program controls it"};
+    ArvGvDevice* gv_device = ARV_GV_DEVICE(device.device());
+    for (const double end_s = now_s() + kHeartbeats_s;
+         arv_gv_device_is_controller(gv_device) == 0;) {
+        if (now_s() > end_s)
+            throw Error{"cannot open camera", device.name, "control over it",
+                        "another program controls it"};
+        std::this_thread::sleep_for(std::chrono::duration<double>(kBetweenTries_s));
+        arv_gv_device_take_control(gv_device, nullptr);
+    }
 }
 
 }  // namespace
