@@ -249,8 +249,7 @@ void add_bench(CLI::App& app) {
         app, "bench", "Measures what accuracy costs in time: samplers and their knobs; shadow maps",
         {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
-         "nearfield bench accuracy --samplers sum,pdis --sweeps samplers --k 16,63,1000 -o "
-         "pdis.html",
+         "nearfield bench accuracy --samplers sum,pdis --k 16,63,1000 -o pdis.html",
          "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers"});
     add_choice(*sub, "what", c->what,
                {{"accuracy", What::Accuracy}, {"shadows", What::Shadows}, {"papers", What::Papers}},

@@ -35,7 +35,7 @@ struct PapersColumn {
 };
 
 const std::vector<PapersColumn>& papers_columns() {
-    static const std::vector<PapersColumn> kColumns = {
+    static const std::vector<PapersColumn> columns = {
         {"lamp", [](const PapersRow& row) { return row.lamp; }},
         {"camera", [](const PapersRow& row) { return row.view; }},
         {"device", [](const PapersRow& row) { return row.device; }},
@@ -60,7 +60,7 @@ const std::vector<PapersColumn>& papers_columns() {
         {"memory", [](const PapersRow& row) { return megabytes(row.bytes); }},
         {"the paper", [](const PapersRow& row) { return stated(row); }},
     };
-    return kColumns;
+    return columns;
 }
 
 // Columns in which every row has the same or nothing are left out; the same is said once.
@@ -69,6 +69,7 @@ report::Table papers_table(const std::vector<const PapersRow*>& rows) {
     table.rows.resize(rows.size());
     for (const PapersColumn& column : papers_columns()) {
         std::vector<std::string> cells;
+        cells.reserve(rows.size());
         for (const PapersRow* row : rows)
             cells.push_back(column.text(*row));
         const bool is_same = std::all_of(cells.begin(), cells.end(),

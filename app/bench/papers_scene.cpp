@@ -77,6 +77,7 @@ PapersLamp make_papers_lamp(const LampSizes& sizes, const std::string& folder, b
 
 std::vector<PapersLamp> make_papers_lamps(const std::string& folder, bool quick) {
     std::vector<PapersLamp> lamps;
+    lamps.reserve(kLamps.size());
     for (const LampSizes& sizes : kLamps)
         lamps.push_back(make_papers_lamp(sizes, folder, quick));
     return lamps;

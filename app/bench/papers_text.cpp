@@ -44,7 +44,7 @@ bool fits(std::string_view wanted, std::string_view got) {
 }  // namespace
 
 const std::vector<FigureText>& figure_texts() {
-    static const std::vector<FigureText> kTexts = {
+    static const std::vector<FigureText> texts = {
         {"tables", "Precomputation and memory (section 7)",
          "\"The precomputation time (CDFs, sat and reference light positions for shadow maps) for "
          "all light field data listed in Table 1 is quite low: 513ms for bike, 129ms for car1 and "
@@ -121,7 +121,7 @@ const std::vector<FigureText>& figure_texts() {
          "Lamp of 11 x 9 images, K = 200 in the pictures. Errors are colored from 0.1 % to 100 "
          "%; white is also where there is hardly any light. uniform draws at least one sample "
          "of every image in view, also where K is less."}};
-    return kTexts;
+    return texts;
 }
 
 std::string stated(const PapersRow& row) {

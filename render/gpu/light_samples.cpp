@@ -116,7 +116,8 @@ void add_light_samples(Device& device,
         part.y = static_cast<int>(entries);
     const auto width = static_cast<std::uint64_t>(query.size_px.x);
     // Whole groups of 8 x 8 pixels.
-    const std::uint64_t fitting = samples.most_energies / (entries * width) / 8 * 8;
+    const std::uint64_t fitting =
+        samples.most_energies / std::max<std::uint64_t>(entries * width, 1) / 8 * 8;
     const int rows = static_cast<int>(std::min<std::uint64_t>(
         std::max<std::uint64_t>(fitting, 8), static_cast<std::uint64_t>(query.size_px.y)));
     const std::uint64_t pixels = width * static_cast<std::uint64_t>(rows);

@@ -64,6 +64,7 @@ struct LightSumPrograms {
         bool has_color, has_radiance_weighting;
         int quads;              // of texels along x whose weights are kept
         int cells, ring_cells;  // 0 without shadows
+        // NOLINTNEXTLINE(modernize-use-nullptr): it takes the comparison's 0 for a pointer.
         auto operator<=>(const Variant&) const = default;
     };
     struct Pair {

@@ -102,6 +102,7 @@ SceneBuffers upload_scene(Device& device, const Scene& scene) {
     SceneBuffers buffers;
     buffers.has_tangents = needs_tangents(scene);
     Vertices vertices;
+    buffers.instances.reserve(scene.instances.size());
     for (const Instance& instance : scene.instances)
         buffers.instances.push_back(append(scene.meshes[static_cast<std::size_t>(instance.mesh)],
                                            instance.world_from_mesh, buffers.has_tangents,
