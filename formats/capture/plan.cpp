@@ -244,6 +244,7 @@ std::vector<Shot> shots_of(const Plan& plan) {
     const auto exposure_or_middle = [middle_us](double exposure_us) {
         return exposure_us > 0 ? exposure_us : middle_us;
     };
+    shots.reserve(static_cast<std::size_t>(plan.target_views));
     for (int view = 0; view < plan.target_views; ++view)
         shots.push_back({0, ShotKind::Target, glm::ivec2(-1), view,
                          exposure_or_middle(plan.target_exposure_us), 0});

@@ -87,8 +87,10 @@ std::size_t draw_view(const ShadowPass& pass,
         const DrawRange& range = scene.instances[i];
         if (!is_caster[i] || range.indices == 0 || is_out_of_view(slab, view, range))
             continue;
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.indices), GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)));
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes an offset as a pointer.
+        const auto* first =
+            reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t));
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.indices), GL_UNSIGNED_INT, first);
         indices += range.indices;
     }
     return indices / 3;

@@ -41,6 +41,7 @@ std::vector<float> core_weights(const BenchCamera& camera, const SampleGrid& gri
         sum += weights.back();
     }
     std::vector<float> normalized;
+    normalized.reserve(weights.size());
     for (const double weight : weights)
         normalized.push_back(static_cast<float>(weight / sum));
     return normalized;

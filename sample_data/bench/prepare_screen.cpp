@@ -59,6 +59,7 @@ ScreenLight screen_light(const LensLight& light,
     const auto width = static_cast<std::size_t>(grid.count.x);
     tbb::parallel_for(0, grid.count.y, [&](int row) {
         std::vector<glm::dvec3> points;
+        points.reserve(width);
         for (int column = 0; column < grid.count.x; ++column)
             points.push_back(
                 screen_point(*light.places, grid.min_m + glm::dvec2(column, row) * grid.step_m));

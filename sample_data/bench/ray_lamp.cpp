@@ -6,6 +6,7 @@
 #include "sample_data/headlight.h"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -40,10 +41,12 @@ RayLamp slab_lamp(const std::string& path) {
     const glm::dvec2 cells =
         glm::dvec2(slab->grid - 1) + static_cast<double>(slab->profile.cells.size());
     lamp.aperture.half_m = 0.5 * cells * slab->pitch_m;
-    for (int k = 1; k < static_cast<int>(cells.x + 0.5); ++k)
-        lamp.aperture.breaks_x_m.push_back(k * slab->pitch_m.x - lamp.aperture.half_m.x);
-    for (int k = 1; k < static_cast<int>(cells.y + 0.5); ++k)
-        lamp.aperture.breaks_y_m.push_back(k * slab->pitch_m.y - lamp.aperture.half_m.y);
+    for (long k = 1; k < std::lround(cells.x); ++k)
+        lamp.aperture.breaks_x_m.push_back(static_cast<double>(k) * slab->pitch_m.x -
+                                           lamp.aperture.half_m.x);
+    for (long k = 1; k < std::lround(cells.y); ++k)
+        lamp.aperture.breaks_y_m.push_back(static_cast<double>(k) * slab->pitch_m.y -
+                                           lamp.aperture.half_m.y);
     lamp.feature_tangent = slab->texel_m() / slab->delta_m;
     lamp.radiance_row = [slab](glm::dvec2 a_m, double tangent_y, std::span<const double> tangent_x,
                                std::span<double> rgb) {

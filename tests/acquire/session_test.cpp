@@ -17,7 +17,7 @@ using capture::CaptureWriter;
 
 class Session : public testing::Test {
   protected:
-    void SetUp() override { std::filesystem::remove_all(folder); }
+    void SetUp() override { std::filesystem::remove_all(folder_); }
 
     static capture::CaptureHeader header() {
         capture::CaptureHeader header;
@@ -33,16 +33,16 @@ class Session : public testing::Test {
 
     // A session on the folder, new or gone on with.
     SessionResult run(Script& script, double reconnect_s = 10) {
-        CaptureWriter writer = capture::holds_capture(folder)
-                                   ? CaptureWriter::reopen(folder)
-                                   : CaptureWriter::create(folder, header());
+        CaptureWriter writer = capture::holds_capture(folder_)
+                                   ? CaptureWriter::reopen(folder_)
+                                   : CaptureWriter::create(folder_, header());
         SessionOptions options;
         options.open = [&script] { return open_scripted(script); };
         options.should_stop = [&script] {
             return script.stop_at > 0 && script.frames >= script.stop_at;
         };
         options.reconnect_s = reconnect_s;
-        return run_session(writer, capture::read_capture(folder), options);
+        return run_session(writer, capture::read_capture(folder_), options);
     }
 
     std::string complaint(Script& script) {
@@ -55,19 +55,19 @@ class Session : public testing::Test {
     }
 
     void expect_complete() const {
-        const Capture capture = capture::read_capture(folder);
+        const Capture capture = capture::read_capture(folder_);
         EXPECT_TRUE(missing_shots(capture).empty());
-        EXPECT_TRUE(damaged_frames(folder, capture, {}).empty());
+        EXPECT_TRUE(damaged_frames(folder_, capture, {}).empty());
     }
 
-    const std::string folder = "session_capture";
-    const int shots = 2 * 3 + 6 * 3 + 3;
+    const std::string folder_ = "session_capture";
+    const int shots_ = 2 * 3 + 6 * 3 + 3;
 };
 
 TEST_F(Session, TakesEveryShotOnce) {
     Script script;
     const SessionResult result = run(script);
-    EXPECT_EQ(result.frames, shots);
+    EXPECT_EQ(result.frames, shots_);
     EXPECT_EQ(result.retaken, 0);
     EXPECT_EQ(result.discarded_frames, 0);
     EXPECT_GT(result.ratios, 0);
@@ -83,7 +83,7 @@ TEST_F(Session, WaitsForALateCamera) {
     EXPECT_EQ(run(script).discarded_frames, 2);
     expect_complete();
     // The right exposure in every frame: its mean follows.
-    const Capture capture = capture::read_capture(folder);
+    const Capture capture = capture::read_capture(folder_);
     std::map<double, double> least;
     for (const auto& [number, record] : capture.frames)
         if (record.shot.position == glm::ivec2(0, 0) &&
@@ -108,7 +108,7 @@ TEST_F(Session, NamesExposuresInAnotherRatioAndTakesThePositionAgain) {
     Script script;
     script.true_ratio = 1.1;
     EXPECT_THAT(complaint(script), testing::HasSubstr("true exposures are not those asked for"));
-    const Capture capture = capture::read_capture(folder);
+    const Capture capture = capture::read_capture(folder_);
     ASSERT_EQ(capture.rejects.size(), 1U);
     EXPECT_EQ(capture.rejects.front().shots.size(), 3U);
     script.true_ratio = 1;
@@ -121,7 +121,7 @@ TEST_F(Session, StopsWhereTheLampDriftsAndTakesWhatIsDoubtfulAgain) {
     script.drift_per_frame = 2e-3;
     script.drifts_from = 25;
     EXPECT_THAT(complaint(script), testing::HasSubstr("the lamp drifts"));
-    EXPECT_GE(capture::read_capture(folder).rejects.front().shots.size(),
+    EXPECT_GE(capture::read_capture(folder_).rejects.front().shots.size(),
               7U);  // two positions and the look itself
     script.drift_per_frame = 0;
     run(script);
@@ -134,7 +134,7 @@ TEST_F(Session, TakesIncompleteAndStaleFramesAgain) {
     script.stale_at = 33;
     EXPECT_EQ(run(script).retaken, 2);
     expect_complete();
-    EXPECT_EQ(capture::read_capture(folder).events.size(), 2U);
+    EXPECT_EQ(capture::read_capture(folder_).events.size(), 2U);
 }
 
 TEST_F(Session, GoesOnWhenACameraComesBack) {
@@ -143,7 +143,7 @@ TEST_F(Session, GoesOnWhenACameraComesBack) {
     script.tries_to_come_back = 1;
     const SessionResult result = run(script);
     EXPECT_EQ(result.reconnects, 1);
-    EXPECT_EQ(result.frames, shots);
+    EXPECT_EQ(result.frames, shots_);
     expect_complete();
 }
 
@@ -151,7 +151,7 @@ TEST_F(Session, SaysWhenACameraStaysAway) {
     Script script;
     script.lost_at = 25;
     script.tries_to_come_back = 1000;
-    CaptureWriter::create(folder, header());
+    CaptureWriter::create(folder_, header());
     EXPECT_THROW(run(script, 0.5), Error);
     Script well;
     run(well);
@@ -160,11 +160,11 @@ TEST_F(Session, SaysWhenACameraStaysAway) {
 
 TEST_F(Session, StopsAtAnyFrameAndGoesOn) {
     for (int stop_at = 1; stop_at < 40; stop_at += 3) {
-        std::filesystem::remove_all(folder);
+        std::filesystem::remove_all(folder_);
         Script script;
         script.stop_at = stop_at;
         EXPECT_THROW(run(script), Stopped) << stop_at;
-        EXPECT_TRUE(damaged_frames(folder, capture::read_capture(folder), {}).empty());
+        EXPECT_TRUE(damaged_frames(folder_, capture::read_capture(folder_), {}).empty());
         Script well;
         run(well);
         expect_complete();
@@ -175,7 +175,7 @@ TEST_F(Session, LosesNothingWhenTheStageStalls) {
     Script script;
     script.stalled_at = 30;
     EXPECT_THAT(complaint(script), testing::HasSubstr("stalled"));
-    EXPECT_GT(capture::read_capture(folder).frames.size(), 10U);
+    EXPECT_GT(capture::read_capture(folder_).frames.size(), 10U);
     script.stalled_at = 0;
     run(script);
     expect_complete();

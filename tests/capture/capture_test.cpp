@@ -15,7 +15,7 @@ namespace {
 
 class CaptureFolder : public testing::Test {
   protected:
-    void SetUp() override { std::filesystem::remove_all(folder); }
+    void SetUp() override { std::filesystem::remove_all(folder_); }
 
     static CaptureHeader header() {
         CaptureHeader header;
@@ -50,20 +50,20 @@ class CaptureFolder : public testing::Test {
 
     // All but the last frame.
     void write_most() {
-        CaptureWriter writer = CaptureWriter::create(folder, header());
+        CaptureWriter writer = CaptureWriter::create(folder_, header());
         writer.add(SessionRecord{1, "2026-01-01T00:00:00Z", "nearfield", "v", "m", "s", 0});
         const std::vector<Shot> shots = shots_of(*header().plan);
         for (std::size_t k = 0; k + 1 < shots.size(); ++k)
             writer.add(frame(static_cast<int>(k)), record(shots[k]));
     }
 
-    const std::string folder = "a_capture";
-    const std::string log = folder + "/log.jsonl";
+    const std::string folder_ = "a_capture";
+    const std::string log_ = folder_ + "/log.jsonl";
 };
 
 TEST_F(CaptureFolder, TellsWhatWasWritten) {
     write_most();
-    const Capture capture = read_capture(folder);
+    const Capture capture = read_capture(folder_);
     EXPECT_EQ(json_of(*capture.header.plan), json_of(*header().plan));
     EXPECT_EQ(capture.sessions.size(), 1U);
     ASSERT_EQ(capture.frames.size(), 5U);
@@ -72,8 +72,8 @@ TEST_F(CaptureFolder, TellsWhatWasWritten) {
     EXPECT_EQ(record.time_us, 1234567890123);
     EXPECT_EQ(record.temperature_c, 31.5);
     EXPECT_EQ(record.reading_lx, std::nullopt);
-    EXPECT_EQ(read_frame(folder, record).values, frame(3).values);
-    EXPECT_TRUE(damaged_frames(folder, capture, {}).empty());
+    EXPECT_EQ(read_frame(folder_, record).values, frame(3).values);
+    EXPECT_TRUE(damaged_frames(folder_, capture, {}).empty());
     ASSERT_EQ(missing_shots(capture).size(), 1U);
     EXPECT_EQ(missing_shots(capture).front().number, 5);
 }
@@ -82,16 +82,16 @@ TEST_F(CaptureFolder, TellsWhatWasWritten) {
 // goes on from there.
 TEST_F(CaptureFolder, SurvivesATornLog) {
     write_most();
-    const std::string whole = read_file(log);
+    const std::string whole = read_file(log_);
     for (std::size_t size = 0; size < whole.size(); size += 7) {
-        write_file(whole.substr(0, size), log);
-        const Capture torn = read_capture(folder);
+        write_file(whole.substr(0, size), log_);
+        const Capture torn = read_capture(folder_);
         EXPECT_EQ(torn.has_torn_end, size > 0 && whole[size - 1] != '\n');
         {
-            CaptureWriter writer = CaptureWriter::reopen(folder);
+            CaptureWriter writer = CaptureWriter::reopen(folder_);
             writer.add(EventRecord{2, 0, "went on", ""});
         }
-        const Capture after = read_capture(folder);
+        const Capture after = read_capture(folder_);
         EXPECT_FALSE(after.has_torn_end);
         EXPECT_EQ(after.frames.size(), torn.frames.size());
         EXPECT_EQ(after.events.size(), 1U);
@@ -100,55 +100,55 @@ TEST_F(CaptureFolder, SurvivesATornLog) {
 
 TEST_F(CaptureFolder, FindsDamagedAndMissingFrames) {
     write_most();
-    const Capture capture = read_capture(folder);
-    const std::string first = folder + "/" + capture.frames.at(1).file;
+    const Capture capture = read_capture(folder_);
+    const std::string first = folder_ + "/" + capture.frames.at(1).file;
     std::string bytes = read_file(first);
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
     write_file(bytes, first);
-    std::filesystem::remove(folder + "/" + capture.frames.at(4).file);
-    EXPECT_EQ(damaged_frames(folder, capture, {}), (std::vector<int>{1, 4}));
-    EXPECT_THROW(read_frame(folder, capture.frames.at(1)), Error);
-    EXPECT_THROW(read_frame(folder, capture.frames.at(4)), Error);
+    std::filesystem::remove(folder_ + "/" + capture.frames.at(4).file);
+    EXPECT_EQ(damaged_frames(folder_, capture, {}), (std::vector<int>{1, 4}));
+    EXPECT_THROW(read_frame(folder_, capture.frames.at(1)), Error);
+    EXPECT_THROW(read_frame(folder_, capture.frames.at(4)), Error);
 }
 
 TEST_F(CaptureFolder, TakesRejectedFramesAgain) {
     write_most();
     const std::vector<Shot> shots = shots_of(*header().plan);
     {
-        CaptureWriter writer = CaptureWriter::reopen(folder);
+        CaptureWriter writer = CaptureWriter::reopen(folder_);
         writer.add(RejectRecord{{2, 3}, "the lamp drifts"});
     }
-    EXPECT_EQ(missing_shots(read_capture(folder)).size(), 3U);
+    EXPECT_EQ(missing_shots(read_capture(folder_)).size(), 3U);
     {
-        CaptureWriter writer = CaptureWriter::reopen(folder);
+        CaptureWriter writer = CaptureWriter::reopen(folder_);
         writer.add(frame(77), record(shots[2]));
     }
-    const Capture capture = read_capture(folder);
+    const Capture capture = read_capture(folder_);
     EXPECT_EQ(missing_shots(capture).size(), 2U);
-    EXPECT_EQ(read_frame(folder, capture.frames.at(2)).values.front(), 77);
+    EXPECT_EQ(read_frame(folder_, capture.frames.at(2)).values.front(), 77);
 }
 
 TEST_F(CaptureFolder, HasOneWriter) {
-    const CaptureWriter writer = CaptureWriter::create(folder, header());
-    EXPECT_THROW(CaptureWriter::reopen(folder), Error);
-    EXPECT_THROW(CaptureWriter::create(folder, header()), Error);
+    const CaptureWriter writer = CaptureWriter::create(folder_, header());
+    EXPECT_THROW(CaptureWriter::reopen(folder_), Error);
+    EXPECT_THROW(CaptureWriter::create(folder_, header()), Error);
 }
 
 TEST_F(CaptureFolder, IsNotMadeWhereFilesAre) {
-    std::filesystem::create_directory(folder);
-    write_file("x", folder + "/notes.txt");
-    EXPECT_THROW(CaptureWriter::create(folder, header()), Error);
-    EXPECT_FALSE(std::filesystem::exists(folder + "/frames"));
-    EXPECT_THROW(read_capture(folder), Error);
+    std::filesystem::create_directory(folder_);
+    write_file("x", folder_ + "/notes.txt");
+    EXPECT_THROW(CaptureWriter::create(folder_, header()), Error);
+    EXPECT_FALSE(std::filesystem::exists(folder_ + "/frames"));
+    EXPECT_THROW(read_capture(folder_), Error);
 }
 
 TEST_F(CaptureFolder, RefusesLinesThatAreNotItsOwn) {
     write_most();
-    const std::string whole = read_file(log);
+    const std::string whole = read_file(log_);
     const auto complaint = [&](const std::string& line) -> std::string {
-        write_file(whole + line + "\n", log);
+        write_file(whole + line + "\n", log_);
         try {
-            read_capture(folder);
+            read_capture(folder_);
         } catch (const Error& error) {
             return error.what();
         }
