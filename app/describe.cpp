@@ -13,20 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const Provenance& provenance) {
-    Json json = {{"program", provenance.program}, {"command", provenance.command}};
-    json["options"] = Json::object();
-    for (const auto& [name, value] : provenance.options)
-        json["options"][name] = value;
-    json["inputs"] = Json::array();
-    for (const Provenance::Input& input : provenance.inputs)
-        json["inputs"].push_back({{"name", input.name}, {"xxh128", input.xxh128}});
-    json["figures"] = Json::object();
-    for (const auto& [name, value] : provenance.figures)
-        json["figures"][name] = value;
-    return json;
-}
-
 Json to_json(const Slab& slab) {
     const glm::dvec2 extent_m = slab.s_max_m - slab.s_min_m;
     return {{"grid", {slab.grid.x, slab.grid.y}},
@@ -75,6 +61,20 @@ std::string slab_text(const Json& slab, std::size_t index) {
 
 }  // namespace
 
+Json describe(const Provenance& provenance) {
+    Json json = {{"program", provenance.program}, {"command", provenance.command}};
+    json["options"] = Json::object();
+    for (const auto& [name, value] : provenance.options)
+        json["options"][name] = value;
+    json["inputs"] = Json::array();
+    for (const Provenance::Input& input : provenance.inputs)
+        json["inputs"].push_back({{"name", input.name}, {"xxh128", input.xxh128}});
+    json["figures"] = Json::object();
+    for (const auto& [name, value] : provenance.figures)
+        json["figures"][name] = value;
+    return json;
+}
+
 Json describe(const LightField& lightfield,
               const FileKind& kind,
               const std::optional<model::TableCheck>& tables) {
@@ -96,7 +96,7 @@ Json describe(const LightField& lightfield,
         json["tables"] = {{"values", tables->values},
                           {"different", tables->different},
                           {"worst_relative", tables->worst_relative}};
-    json["provenance"] = to_json(lightfield.provenance);
+    json["provenance"] = describe(lightfield.provenance);
     return json;
 }
 
@@ -106,7 +106,7 @@ Json describe(const Picture& picture) {
     for (const Layer& layer : picture.layers)
         json["layers"].push_back(
             {{"name", layer.name.empty() ? "radiance" : layer.name}, {"channels", layer.channels}});
-    json["provenance"] = to_json(picture.provenance);
+    json["provenance"] = describe(picture.provenance);
     return json;
 }
 

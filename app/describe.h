@@ -23,6 +23,9 @@ nlohmann::ordered_json describe(const LightField& lightfield,
 /// kind "picture": size_px, layers, provenance.
 nlohmann::ordered_json describe(const Picture& picture);
 
+/// program, command; options and figures by name; inputs: the same of every kind.
+nlohmann::ordered_json describe(const Provenance& provenance);
+
 /// The same for people, from the JSON.
 std::string as_text(const nlohmann::ordered_json& description);
 

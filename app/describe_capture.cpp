@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/describe_capture.h"
 
-#include "formats/files/provenance_json.h"
+#include "app/describe.h"
+#include "formats/files/json_field.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -76,7 +77,7 @@ Json describe(const Capture& capture, const std::optional<std::vector<int>>& dam
     list("rejects", capture.rejects);
     if (damaged)
         json["damaged"] = *damaged;
-    json["provenance"] = json_of(capture.header.provenance);
+    json["provenance"] = describe(capture.header.provenance);
     return json;
 }
 

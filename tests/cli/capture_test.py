@@ -97,6 +97,7 @@ class CaptureTest(ProgramTest):
     def assert_complete(self, folder):
         info = json.loads(self.done("info", folder, "--verify", "--json").stdout)
         self.assertEqual((info["missing"], info["damaged"]), (0, []))
+        self.assertEqual((info["provenance"]["command"], "reconnect_s" in info["provenance"]["options"]), ("capture", True))
 
     def test_a_capture_is_whole_and_described(self):
         with served(ADDRESS + "1", "--fast"):
