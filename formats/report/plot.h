@@ -51,8 +51,35 @@ struct HeatMap {
     glm::ivec2 picture_px{1000, 480};
 };
 
+/// Small vectors at places of a picture or plane, drawn enlarged.
+struct VectorMap {
+    std::string title, x_label, y_label;
+    glm::dvec2 lower{0.0}, upper{0.0};  // of the drawing, in the axes' units
+    bool flip_y = false;                // y rises downwards, as in pictures
+    double enlargement = 1.0;
+    struct Vectors {
+        std::string name, color;  // "#rrggbb"
+        std::vector<glm::dvec2> at, vector;
+    };
+    std::vector<Vectors> groups;
+};
+
+/// Lines in space, seen from a corner, all axes to the same scale.
+struct Wireframe {
+    std::string title, x_label, y_label, z_label;
+    double turn_deg = 30, tilt_deg = 60;  // gnuplot's view: tilt from above, then turn
+    struct Line {
+        std::string name;  // in the legend; empty: not there
+        std::string color;
+        std::vector<glm::dvec3> points;
+    };
+    std::vector<Line> lines;
+};
+
 /// Nothing where gnuplot is not installed or fails; the caller says so on its page.
 std::optional<Image> draw(const Plot& plot, const std::string& caption);
 std::optional<Image> draw(const HeatMap& map, const std::string& caption);
+std::optional<Image> draw(const VectorMap& map, const std::string& caption);
+std::optional<Image> draw(const Wireframe& wireframe, const std::string& caption);
 
 }  // namespace nearfield::report
