@@ -23,26 +23,33 @@ std::optional<Image> svg_of(const std::string& script, const std::string& captio
     return svg ? std::optional<Image>({"image/svg+xml", *svg, caption}) : std::nullopt;
 }
 
-glm::dvec3 extent_of(const Wireframe& wireframe) {
-    constexpr double kFar = 1e300;
+struct Extent {
+    glm::dvec3 low, high;
+
+    glm::dvec3 size() const { return high - low; }
+};
+
+Extent extent_of(const Wireframe& wireframe) {
+    constexpr double kFar = 1e300, kMargin = 0.02;
     glm::dvec3 low(kFar), high(-kFar);
     for (const Wireframe::Line& line : wireframe.lines)
         for (const glm::dvec3& point : line.points) {
             low = glm::min(low, point);
             high = glm::max(high, point);
         }
-    return glm::max(high - low, glm::dvec3(1.0 / kFar));
+    const glm::dvec3 size = glm::max(high - low, glm::dvec3(1.0 / kFar));
+    return {low - kMargin * size, high + kMargin * size};
 }
 
 // With equal scales gnuplot fits x and y into the picture; what is taller would be cut off.
-double zoom_of(glm::dvec3 extent) {
+double zoom_of(glm::dvec3 size) {
     constexpr double kFitting = 1.6;
-    return std::min(1.0, kFitting * std::max(extent.x, extent.y) / glm::length(extent));
+    return std::min(1.0, kFitting * std::max(size.x, size.y) / glm::length(size));
 }
 
 // A step of 1, 2 or 5 times a power of ten, four of which cover the longest axis.
-double tics_of(glm::dvec3 extent) {
-    const double step = std::max({extent.x, extent.y, extent.z}) / 4;
+double tics_of(glm::dvec3 size) {
+    const double step = std::max({size.x, size.y, size.z}) / 4;
     const double decade = std::pow(10.0, std::floor(std::log10(step)));
     for (const double factor : {1.0, 2.0, 5.0})
         if (step <= factor * decade)
@@ -79,7 +86,7 @@ std::optional<Image> draw(const VectorMap& map, const std::string& caption) {
 }
 
 std::optional<Image> draw(const Wireframe& wireframe, const std::string& caption) {
-    const glm::dvec3 extent = extent_of(wireframe);
+    const Extent extent = extent_of(wireframe);
     std::string script = fmt::format(fmt::runtime(kSvg), 900, 700) +
                          labels(wireframe.title, wireframe.x_label, wireframe.y_label) +
                          "set zlabel " + quoted(wireframe.z_label) + " rotate\n";
@@ -87,7 +94,10 @@ std::optional<Image> draw(const Wireframe& wireframe, const std::string& caption
         "set view {0:g},{1:g},{2:g}\nset xtics {3:g}\nset ytics {3:g}\nset ztics {3:g}\nset view "
         "equal xyz\nset xyplane relative 0.05\nset grid\nset key "
         "outside top center horizontal\n",
-        wireframe.tilt_deg, wireframe.turn_deg, zoom_of(extent), tics_of(extent));
+        wireframe.tilt_deg, wireframe.turn_deg, zoom_of(extent.size()), tics_of(extent.size()));
+    for (int axis = 0; axis < 3; ++axis)
+        script += fmt::format("set {}range [{:.8g}:{:.8g}]\n", "xyz"[axis], extent.low[axis],
+                              extent.high[axis]);
     std::string command = "splot ";
     for (std::size_t k = 0; k < wireframe.lines.size(); ++k) {
         const Wireframe::Line& line = wireframe.lines[k];
