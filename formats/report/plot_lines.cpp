@@ -47,9 +47,9 @@ double zoom_of(glm::dvec3 size) {
     return std::min(1.0, kFitting * std::max(size.x, size.y) / glm::length(size));
 }
 
-// A step of 1, 2 or 5 times a power of ten, four of which cover the longest axis.
+// A step of 1, 2 or 5 times a power of ten, some six of which cover the longest axis.
 double tics_of(glm::dvec3 size) {
-    const double step = std::max({size.x, size.y, size.z}) / 4;
+    const double step = std::max({size.x, size.y, size.z}) / 6;
     const double decade = std::pow(10.0, std::floor(std::log10(step)));
     for (const double factor : {1.0, 2.0, 5.0})
         if (step <= factor * decade)
