@@ -39,7 +39,7 @@ fi
 if $all; then
     step "test with sanitizers, clang-tidy beside them"
     # The longest fuzz tests share a folder and so a core; the other core checks the sources.
-    scripts/tidy.sh >build/tidy.log 2>&1 &
+    scripts/tidy.py >build/tidy.log 2>&1 &
     tidy=$!
     trap 'kill "$tidy" 2>/dev/null || true' EXIT
     NEARFIELD_FUZZ_COUNT=100000 ctest --preset asan -j 2
