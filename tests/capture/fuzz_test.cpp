@@ -47,7 +47,9 @@ CaptureHeader small_header() {
 TEST(CaptureFuzz, PlansAreReadOrRefused) {
     fuzz(json_of(*small_header().plan).dump(2), [](const std::string& text) {
         const Json document = parse_json(text, "plan.json");
-        shots_of(plan_from({document, "plan.json"}));
+        const Plan plan = plan_from({document, "plan.json"});
+        if (!plan.bracket.exposures_us.empty())  // else they are still to be metered
+            shots_of(plan);
     });
 }
 
