@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nearfield::report {
 namespace {
@@ -89,8 +90,9 @@ std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
     script += fmt::format("set cbrange [{:.8g}:{:.8g}]\n", map.low, map.high);
     script += map.flip_x ? fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.upper.x, map.lower.x)
                          : fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.lower.x, map.upper.x);
-    script += fmt::format("set yrange [{:.8g}:{:.8g}]\nunset key\n$map << EOD\n", map.lower.y,
-                          map.upper.y);
+    const auto [bottom, top] =
+        map.flip_y ? std::pair(map.upper.y, map.lower.y) : std::pair(map.lower.y, map.upper.y);
+    script += fmt::format("set yrange [{:.8g}:{:.8g}]\nunset key\n$map << EOD\n", bottom, top);
     const glm::dvec2 step = (map.upper - map.lower) / glm::dvec2(map.size);
     for (int row = 0; row < map.size.y; ++row) {
         for (int column = 0; column < map.size.x; ++column) {

@@ -47,6 +47,7 @@ struct HeatMap {
     double low = 0, high = 0;    // range of the scale
     bool log_scale = false;      // values below `low` are drawn as `low`
     bool flip_x = false;         // x rises to the left
+    bool flip_y = false;         // y rises downwards, as in pictures
     Palette palette = Palette::FalseColor;
     glm::ivec2 picture_px{1000, 480};
 };
