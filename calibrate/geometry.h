@@ -35,7 +35,7 @@ struct GeometryOptions {
 
 struct CornerResidual {
     int id = 0;
-    glm::dvec2 at_px{0.0}, residual_px{0.0};
+    glm::dvec2 board_m{0.0}, at_px{0.0}, residual_px{0.0};
     bool is_outlier = false;
 };
 
