@@ -21,10 +21,11 @@ ALLOWED = {
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
     "acquire": ["formats"],
+    "fit": ["formats"],
     "render": ["formats"],
     "sample_data": ["formats"],
-    "app": ["formats", "acquire", "render", "sample_data"],
-    "tests": ["formats", "acquire", "render", "sample_data", "app"],
+    "app": ["formats", "fit", "acquire", "render", "sample_data"],
+    "tests": ["formats", "fit", "acquire", "render", "sample_data", "app"],
 }
 
 # Where a library's headers may be included.
@@ -39,6 +40,7 @@ LIBRARIES = {
     r"OpenImageIO/": ["formats/photos"],
     r"arv\.h": ["acquire", "tests/sample_data", "tests/acquire"],
     r"CLI/": ["app"],
+    r"Eigen/": ["calibrate", "fit", "tests"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
 }
 
