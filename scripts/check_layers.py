@@ -23,10 +23,11 @@ ALLOWED = {
     "formats/report": ["formats/files"],
     "acquire": ["formats"],
     "calibrate": ["formats"],
+    "fit": ["formats"],
     "render": ["formats"],
     "sample_data": ["formats"],
-    "app": ["formats", "acquire", "calibrate", "render", "sample_data"],
-    "tests": ["formats", "acquire", "calibrate", "render", "sample_data", "app"],
+    "app": ["formats", "acquire", "calibrate", "fit", "render", "sample_data"],
+    "tests": ["formats", "acquire", "calibrate", "fit", "render", "sample_data", "app"],
 }
 
 # Where a library's headers may be included.
@@ -43,6 +44,7 @@ LIBRARIES = {
     r"CLI/": ["app"],
     r"opencv2/": ["calibrate", "fit", "tests"],
     r"ceres/": ["calibrate", "tests/calibrate"],
+    r"Eigen/": ["calibrate", "fit", "tests"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
 }
 

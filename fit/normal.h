@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The normal equations of one texel: N = G^T W G + lambda q D^T D.
+#pragma once
+
+#include "fit/design.h"
+
+#include <span>
+#include <vector>
+
+namespace nearfield::fit {
+
+/// D^T D: its entries on and below the diagonal.
+struct Penalty {
+    struct Entry {
+        int row = 0, column = 0;
+        double value = 0;
+    };
+    std::vector<Entry> lower;
+    glm::ivec2 reach{0};  // farthest neighbor along x and y
+};
+
+/// Differences of order 1 or 2 on a W x H grid; an axis too short for one has none.
+Penalty difference_penalty(glm::ivec2 grid, int order);
+
+struct NormalEquations {
+    int size = 0;
+    int leading = 0;            // distance of columns
+    std::vector<double> lower;  // N, column by column; entries above the diagonal mean nothing
+    std::vector<double> rhs;    // G^T W b, and zeros to `leading`
+    std::vector<double> norm;   // [m]: sqrt(N_mm); 0: nothing sees it
+    double data_norm = 0;       // sqrt(b^T W b)
+    double penalty_scale = 0;   // lambda q
+    int valid_count = 0;        // of measurements with weight
+
+    double entry(int row, int column) const {
+        return lower[static_cast<std::size_t>(column) * static_cast<std::size_t>(leading) +
+                     static_cast<std::size_t>(row)];
+    }
+};
+
+/// Writes N and its right side over what was there. Rectangles of G are added as they are, row by
+/// row: 25,000 steps of four multiply-adds for 11 x 9 B-splines.
+void form_normal(const TexelDesign& texel,
+                 const Penalty& penalty,
+                 std::span<const double> b,
+                 std::span<const double> weight,
+                 double lambda,
+                 NormalEquations& normal);
+
+/// Half the gradient of what is minimized, G^T W (G c - b) + lambda q D^T D c, from G and b, not
+/// from N. `coeffs` and `gradient` have leading entries, `residual` (G c - b) one a measurement.
+void fill_gradient(const TexelDesign& texel,
+                   const Penalty& penalty,
+                   std::span<const double> b,
+                   std::span<const double> weight,
+                   const NormalEquations& normal,
+                   const std::vector<double>& coeffs,
+                   std::vector<double>& residual,
+                   std::vector<double>& gradient);
+
+}  // namespace nearfield::fit
