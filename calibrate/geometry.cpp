@@ -134,7 +134,8 @@ void fill_views(const Fitted& fitted, const Observations& observations, Geometry
             const auto residual = corner_residual_px(fitted.bundle, view, corner);
             const bool is_outlier = fitted.weights.is_outlier[view][i] != 0;
             const glm::dvec2 residual_px = residual.value_or(glm::dvec2(0.0));
-            result.corners.push_back({corner.id, corner.at_px, residual_px, is_outlier});
+            result.corners.push_back(
+                {corner.id, corner.board_m, corner.at_px, residual_px, is_outlier});
             if (is_outlier) {
                 geometry.outliers.push_back(
                     {board.view, board.name, corner.id, glm::length(residual_px)});
