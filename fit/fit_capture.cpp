@@ -70,7 +70,7 @@ double share_outside(const rig::Rig& rig, const Extent& extent, const std::vecto
         }
         return side == 4 || side == -4;
     };
-    const auto width = static_cast<std::size_t>(rig.lens.size_px.x);
+    const auto width = static_cast<std::size_t>(rig.lens->size_px.x);
     double inside = 0, all = 0;
     for (std::size_t k = 0; k < light.size(); ++k) {
         if (!std::isfinite(light[k]))
@@ -87,9 +87,9 @@ Slab planes_of(const rig::Rig& rig,
                const Extent& extent,
                int channels) {
     Slab slab;
-    slab.delta_m = rig.planes.delta_m;
-    slab.grid = rig.planes.grid;
-    slab.pitch_m = rig.planes.pitch_m;
+    slab.delta_m = rig.planes->delta_m;
+    slab.grid = rig.planes->grid;
+    slab.pitch_m = rig.planes->pitch_m;
     slab.s_min_m = extent.min_m;
     slab.s_max_m = extent.max_m;
     constexpr int kMostTexels = 512;
@@ -103,17 +103,17 @@ Slab planes_of(const rig::Rig& rig,
 Optics optics_of(const rig::Rig& rig, const std::vector<PositionFrames>& positions) {
     Optics optics;
     for (const PositionFrames& position : positions)
-        optics.position_m.push_back(rig.planes.position_m[static_cast<std::size_t>(
-            position.position.y * rig.planes.grid.x + position.position.x)]);
-    optics.filter_x = optics.filter_y = rig.radiometry.filter_profile;
-    optics.filter_pitch_m = rig.radiometry.filter_pitch_m;
-    optics.filter_slope = {-std::tan(rig.planes.u_tilt_rad.y), std::tan(rig.planes.u_tilt_rad.x)};
+        optics.position_m.push_back(rig.planes->position_m[static_cast<std::size_t>(
+            position.position.y * rig.planes->grid.x + position.position.x)]);
+    optics.filter_x = optics.filter_y = rig.radiometry->filter_profile;
+    optics.filter_pitch_m = rig.radiometry->filter_pitch_m;
+    optics.filter_slope = {-std::tan(rig.planes->u_tilt_rad.y), std::tan(rig.planes->u_tilt_rad.x)};
     return optics;
 }
 
 // Light in DN/s of a texel to lux: scale over the screen's luminance factor, [j][i].
 std::vector<float> lux_factors(const rig::Rig& rig, const Slab& planes) {
-    const Rigid& camera_from_slab = rig.planes.camera_from_slab;
+    const Rigid& camera_from_slab = rig.planes->camera_from_slab;
     const glm::dvec3 camera_m =
         -(glm::transpose(camera_from_slab.rotation) * camera_from_slab.translation_m);
     std::vector<float> factors;
@@ -124,8 +124,8 @@ std::vector<float> lux_factors(const rig::Rig& rig, const Slab& planes) {
             const glm::dvec3 to_camera = camera_m - glm::dvec3(s_m, 0.0);
             const double angle_rad = std::acos(std::abs(to_camera.z) / glm::length(to_camera));
             factors.push_back(
-                static_cast<float>(rig.radiometry.scale_lx_s_per_dn /
-                                   rig::value_at(rig.radiometry.screen, angle_rad, 1.0)));
+                static_cast<float>(rig.radiometry->scale_lx_s_per_dn /
+                                   rig::value_at(rig.radiometry->screen, angle_rad, 1.0)));
         }
     return factors;
 }
@@ -134,13 +134,13 @@ std::vector<float> lux_factors(const rig::Rig& rig, const Slab& planes) {
 class Rectifier {
   public:
     Rectifier(const Measurement& measurement, const Slab& planes, int channels)
-        : radiometry_(measurement.rig.radiometry),
+        : radiometry_(*measurement.rig.radiometry),
           channels_(channels),
           lux_factors_(lux_factors(measurement.rig, planes)) {
         const TexelGrid grid{planes.texels, planes.s_min_m, planes.s_max_m};
         for (int color = 0; color < raw_colors(radiometry_); ++color)
             maps_.push_back(make_rectify_map(
-                grid, measurement.rig.lens.size_px, radiometry_.mosaic, color,
+                grid, measurement.rig.lens->size_px, radiometry_.mosaic, color,
                 [&rig = measurement.rig](glm::dvec2 s_m) { return seen_px(rig, s_m); }));
     }
 
@@ -279,7 +279,7 @@ void check_positions(const Measurement& measurement, const std::vector<PositionF
     if (positions.size() < kLeast)
         throw Error{"too few positions", measurement.folder, fmt::format("at least {}", kLeast),
                     fmt::format("{}", positions.size())};
-    if (measurement.rig.radiometry.filter_profile.cells.empty())
+    if (measurement.rig.radiometry->filter_profile.cells.empty())
         throw Error{"the filter's profile is not known", "rig",
                     "radiometry.filter_profile: calibrate with views of the filter", "none"};
 }
@@ -293,19 +293,19 @@ CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& 
     check_positions(measurement, positions);
     CaptureFit fit;
     fit.positions = static_cast<int>(positions.size());
-    fit.missing_positions = rig.planes.grid.x * rig.planes.grid.y - fit.positions;
+    fit.missing_positions = rig.planes->grid.x * rig.planes->grid.y - fit.positions;
 
     // Merge and rectify position by position.
     const double start_s = now_s();
     const LampDrift drift(measurement);
     fit.drift_rel = drift.largest_rel();
     const std::vector<float> looks =
-        light_of_looks(measurement, looks_of(positions, rig.planes.grid), drift);
+        light_of_looks(measurement, looks_of(positions, rig.planes->grid), drift);
     const Extent extent = options.extent
                               ? *options.extent
                               : lit_extent(rig, visible_extent(rig), looks, options.dark_share);
     fit.outside_share = share_outside(rig, extent, looks);
-    const int channels = options.wants_color && raw_colors(rig.radiometry) == 3 ? 3 : 1;
+    const int channels = options.wants_color && raw_colors(*rig.radiometry) == 3 ? 3 : 1;
     Slab slab = planes_of(rig, options, extent, channels);
     const Rectifier rectifier(measurement, slab, channels);
     fit.texel_cells_least = rectifier.map().texel_cells_least;
@@ -349,7 +349,7 @@ CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& 
         });
     fit.solve_s = now_s() - chosen_s;
     fit.lightfield.scale_sigma_rel =
-        std::hypot(rig.radiometry.scale_sigma_rel, rig.radiometry.scale_systematic_rel);
+        std::hypot(rig.radiometry->scale_sigma_rel, rig.radiometry->scale_systematic_rel);
     fit.lightfield.slabs = {std::move(slab)};
     for (Slab& replicate : replicates) {
         fit.replicates.push_back(fit.lightfield);

@@ -45,7 +45,7 @@ class ReferenceMean {
     ReferenceMean(const Measurement& measurement, const FrameRecord& first)
         : measurement_(measurement) {
         const capture::Frame frame = read_frame(measurement.folder, first);
-        const double limit_dn = kDriftRange * measurement.rig.radiometry.saturation_dn;
+        const double limit_dn = kDriftRange * measurement.rig.radiometry->saturation_dn;
         for (std::size_t k = 0; k < frame.values.size(); ++k)
             if (frame.values[k] < limit_dn && measurement.maps.is_bad[k] == 0.0F)
                 pixels_.push_back(k);
@@ -53,7 +53,7 @@ class ReferenceMean {
 
     double rate_dn_per_s(const FrameRecord& record) const {
         const capture::Frame frame = read_frame(measurement_.folder, record);
-        const double exposure_s = true_exposure_s(measurement_.rig.radiometry, record);
+        const double exposure_s = true_exposure_s(*measurement_.rig.radiometry, record);
         const rig::Maps& maps = measurement_.maps;
         double sum = 0;
         for (const std::size_t k : pixels_)
@@ -115,7 +115,7 @@ void fill_unknown(std::vector<float>& light,
 }
 
 void take_off_veil(const Measurement& measurement, MergedImage& image) {
-    const rig::Radiometry& radiometry = measurement.rig.radiometry;
+    const rig::Radiometry& radiometry = *measurement.rig.radiometry;
     if (radiometry.veil_share == 0)
         return;
     std::vector<float> filled = image.light_dn_per_s;
@@ -146,21 +146,25 @@ std::vector<PositionFrames> positions_of(const capture::Capture& capture) {
 
 void check_rig(const Measurement& measurement) {
     const rig::Rig& rig = measurement.rig;
+    if (!rig.lens || !rig.planes || !rig.radiometry)
+        throw Error{"the rig does not suffice", "rig", "lens, planes and radiometry",
+                    fmt::format("{}{}{}", rig.lens ? "lens " : "", rig.planes ? "planes " : "",
+                                rig.radiometry ? "radiometry" : "")};
     for (const auto& [number, frame] : measurement.capture.frames) {
-        if (frame.size_px != rig.lens.size_px)
+        if (frame.size_px != rig.lens->size_px)
             throw Error{
                 "rig is not this capture's", measurement.folder + "/" + frame.file,
-                fmt::format("{} x {} px, as the rig", rig.lens.size_px.x, rig.lens.size_px.y),
+                fmt::format("{} x {} px, as the rig", rig.lens->size_px.x, rig.lens->size_px.y),
                 fmt::format("{} x {} px", frame.size_px.x, frame.size_px.y)};
-        if (frame.bits != rig.radiometry.bits)
+        if (frame.bits != rig.radiometry->bits)
             throw Error{"rig is not this capture's", measurement.folder + "/" + frame.file,
-                        fmt::format("{} bits, as the rig", rig.radiometry.bits),
+                        fmt::format("{} bits, as the rig", rig.radiometry->bits),
                         fmt::format("{} bits", frame.bits)};
         const glm::ivec2 position = frame.shot.position;
-        if (position.x >= rig.planes.grid.x || position.y >= rig.planes.grid.y)
+        if (position.x >= rig.planes->grid.x || position.y >= rig.planes->grid.y)
             throw Error{"rig is not this capture's", measurement.folder + "/" + frame.file,
-                        fmt::format("a position of the rig's {} x {}", rig.planes.grid.x,
-                                    rig.planes.grid.y),
+                        fmt::format("a position of the rig's {} x {}", rig.planes->grid.x,
+                                    rig.planes->grid.y),
                         fmt::format("column {}, row {}", position.x, position.y)};
     }
 }
@@ -211,11 +215,11 @@ MergedImage position_light(const Measurement& measurement,
     for (const FrameRecord* record : position.frames) {
         frames.push_back(read_frame(measurement.folder, *record));
         exposed.push_back(
-            {frames.back().values, true_exposure_s(measurement.rig.radiometry, *record)});
+            {frames.back().values, true_exposure_s(*measurement.rig.radiometry, *record)});
         factor += drift.factor(*record) / static_cast<double>(position.frames.size());
     }
-    MergedImage image = merge_frames(exposed, measurement.rig.radiometry, measurement.maps,
-                                     dark_factor(measurement.rig.radiometry, position));
+    MergedImage image = merge_frames(exposed, *measurement.rig.radiometry, measurement.maps,
+                                     dark_factor(*measurement.rig.radiometry, position));
     take_off_veil(measurement, image);
     for (std::size_t k = 0; k < image.light_dn_per_s.size(); ++k) {
         image.light_dn_per_s[k] /= static_cast<float>(factor);

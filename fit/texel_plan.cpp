@@ -14,10 +14,10 @@ namespace {
 constexpr int kEdgePoints = 33;  // of a rectangle's edge, enough for a lens' distortion
 
 std::optional<glm::dvec2> on_s(const rig::Rig& rig, glm::dvec2 at_px) {
-    const auto ray = rig::ray_camera(rig.lens, at_px);
+    const auto ray = rig::ray_camera(*rig.lens, at_px);
     if (!ray)
         return std::nullopt;
-    const Rigid& camera_from_slab = rig.planes.camera_from_slab;
+    const Rigid& camera_from_slab = rig.planes->camera_from_slab;
     const glm::dmat3 slab_from_camera = glm::transpose(camera_from_slab.rotation);
     const glm::dvec3 center_m = -(slab_from_camera * camera_from_slab.translation_m);
     const glm::dvec3 direction = slab_from_camera * *ray;
@@ -58,17 +58,17 @@ double last_right(const IsRight& is_right) {
 }  // namespace
 
 std::optional<glm::dvec2> seen_px(const rig::Rig& rig, glm::dvec2 s_m) {
-    const Rigid& camera_from_slab = rig.planes.camera_from_slab;
-    const auto at_px = rig::project_px(rig.lens, camera_from_slab.rotation * glm::dvec3(s_m, 0.0) +
-                                                     camera_from_slab.translation_m);
-    if (!at_px || at_px->x < 0 || at_px->y < 0 || at_px->x > rig.lens.size_px.x ||
-        at_px->y > rig.lens.size_px.y)
+    const Rigid& camera_from_slab = rig.planes->camera_from_slab;
+    const auto at_px = rig::project_px(*rig.lens, camera_from_slab.rotation * glm::dvec3(s_m, 0.0) +
+                                                      camera_from_slab.translation_m);
+    if (!at_px || at_px->x < 0 || at_px->y < 0 || at_px->x > rig.lens->size_px.x ||
+        at_px->y > rig.lens->size_px.y)
         return std::nullopt;
     return at_px;
 }
 
 Extent visible_extent(const rig::Rig& rig) {
-    const glm::dvec2 size_px(rig.lens.size_px);
+    const glm::dvec2 size_px(rig.lens->size_px);
     const auto middle_m = on_s(rig, 0.5 * size_px);
     if (!middle_m || !seen_px(rig, *middle_m))
         throw Error{"the camera does not see S", "rig", "S before the camera", ""};
@@ -121,7 +121,7 @@ Extent lit_extent(const rig::Rig& rig,
                                              kBrightShare * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), bright, sorted.end());
     const double limit = dark_share * double(*bright);
-    const auto width = static_cast<std::size_t>(rig.lens.size_px.x);
+    const auto width = static_cast<std::size_t>(rig.lens->size_px.x);
     Extent lit{visible.max_m, visible.min_m};
     for (std::size_t k = 0; k < light.size(); ++k) {
         if (!(double(light[k]) > limit))
@@ -142,7 +142,7 @@ Extent lit_extent(const rig::Rig& rig,
 glm::ivec2 matching_texels(const rig::Rig& rig, const Extent& extent, int most) {
     const glm::dvec2 middle_m = 0.5 * (extent.min_m + extent.max_m);
     const double cell_px =
-        rig.radiometry.mosaic == "mono" || rig.radiometry.mosaic == "rgb" ? 1 : 2;
+        rig.radiometry->mosaic == "mono" || rig.radiometry->mosaic == "rgb" ? 1 : 2;
     glm::ivec2 texels{1};
     for (int axis = 0; axis < 2; ++axis) {
         glm::dvec2 from_m = middle_m, to_m = middle_m;

@@ -6,8 +6,8 @@
 ///     }
 ///
 /// found by argument-dependent lookup; so is `words_of(Enum)`, a list of (value, word), for enums.
-/// Numbers must be finite; unknown keys are refused; missing ones keep their values unless the
-/// reader is told that all are required.
+/// Numbers must be finite; unknown keys are refused; a std::optional without value has no key;
+/// missing ones keep their values unless the reader is told that all are required.
 #pragma once
 
 #include "formats/files/error.h"
@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -45,6 +46,11 @@ class FieldWriter {
     template <typename T>
     void operator()(const char* key, T& member) {
         json[key] = value(member);
+    }
+    template <typename T>
+    void operator()(const char* key, std::optional<T>& member) {
+        if (member)
+            json[key] = value(*member);
     }
 
   private:
@@ -101,6 +107,13 @@ class FieldReader {
         known_.emplace_back(key);
         if (missing_ == Missing::Refused || field_.has(key))
             read(field_.at(key), member);
+    }
+    template <typename T>
+    void operator()(const char* key, std::optional<T>& member) {
+        known_.emplace_back(key);
+        member.reset();
+        if (field_.has(key))
+            read(field_.at(key), member.emplace());
     }
 
     /// Throws Error at the first key that nobody asked for.

@@ -147,9 +147,14 @@ Picture picture_of(const Maps& maps, const Provenance& provenance) {
 
 void check(const Rig& rig, const std::string& where) {
     const RigCheck check(where);
-    check_lens(rig.lens, check);
-    check_planes(rig.planes, check);
-    check_radiometry(rig.radiometry, check);
+    if (!rig.lens && !rig.radiometry)
+        throw Error{"bad rig", where, "a lens or radiometry", "neither"};
+    if (rig.lens)
+        check_lens(*rig.lens, check);
+    if (rig.planes)
+        check_planes(*rig.planes, check);
+    if (rig.radiometry)
+        check_radiometry(*rig.radiometry, check);
     check.count("covariance", rig.covariance.size(),
                 rig.covariance_of.size() * rig.covariance_of.size());
 }
@@ -160,16 +165,18 @@ void write_rig(const Rig& rig,
                const std::string& path) {
     check(rig, path);
     const std::string maps_file = maps_path(path);
-    check_maps(maps, rig.lens.size_px, maps_file);
-    write_picture(picture_of(maps, rig.provenance), run, maps_file);
-
+    if (rig.radiometry) {
+        check_maps(maps, rig.lens ? rig.lens->size_px : maps.size_px, maps_file);
+        write_picture(picture_of(maps, rig.provenance), run, maps_file);
+    }
     FieldWriter writer;
     Rig copy = rig;  // fields are visited for reading and writing alike
     visit_fields(writer, copy);
     Json document = {{"nearfield_rig", kRigVersion}};
     document.update(writer.json);
-    document["maps"] = {{"file", fs::path(maps_file).filename().string()},
-                        {"xxh128", hash_file(maps_file)}};
+    if (rig.radiometry)
+        document["maps"] = {{"file", fs::path(maps_file).filename().string()},
+                            {"xxh128", hash_file(maps_file)}};
     document["provenance"] = json_of(rig.provenance);
     if (run)
         document["run"] = {{"date_utc", run->date_utc},

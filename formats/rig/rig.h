@@ -2,7 +2,8 @@
 /// A calibrated measurement bench: what turns frames into light on the plane S, behind a filter
 /// that is known on the plane U. Written by calibrate, read by fit (docs/rig.md).
 ///
-/// Two files: NAME.json holds numbers, NAME.maps.exr the values that differ from pixel to pixel.
+/// Two files: NAME.json holds numbers; NAME.maps.exr, where there is radiometry, the values that
+/// differ from pixel to pixel.
 #pragma once
 
 #include "formats/files/lightfield.h"
@@ -94,20 +95,23 @@ struct Maps {
     std::vector<float> is_bad;  // 1: hot or dead, not to be used
 };
 
+/// What a capture could tell: photographs of a board give a lens alone, a bracket a response.
 struct Rig {
-    Lens lens;
-    Planes planes;
-    Radiometry radiometry;
+    std::optional<Lens> lens;
+    std::optional<Planes> planes;
+    std::optional<Radiometry> radiometry;
     std::vector<Parameter> parameters;       // all that were estimated, for people and for tests
     std::vector<std::string> covariance_of;  // names of `parameters`, in the matrix' order
     std::vector<double> covariance;          // of those, row by row
     Provenance provenance;
 };
 
-/// Throws Error naming `where` and key where a number is out of range or sizes do not fit.
+/// Throws Error naming `where` and key where a number is out of range, sizes do not fit, or nothing
+/// is there.
 void check(const Rig& rig, const std::string& where);
 
-/// Writes both files, maps first: the rig is there when all of it is.
+/// Writes both files, maps first: the rig is there when all of it is. Without radiometry there are
+/// no maps.
 void write_rig(const Rig& rig,
                const Maps& maps,
                const std::optional<RunRecord>& run,

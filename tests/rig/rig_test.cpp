@@ -53,10 +53,10 @@ TEST(Rig, GivesBackWhatWasWritten) {
     EXPECT_EQ(maps.response_sigma_rel, expected.response_sigma_rel);
     EXPECT_EQ(maps.is_bad, expected.is_bad);
     const Rig original = test::small_rig();
-    EXPECT_EQ(rig.planes.position_m, original.planes.position_m);
-    EXPECT_EQ(rig.planes.camera_from_slab.rotation, original.planes.camera_from_slab.rotation);
-    EXPECT_EQ(rig.radiometry.rgb_from_raw, original.radiometry.rgb_from_raw);
-    EXPECT_EQ(rig.radiometry.scale_lx_s_per_dn, original.radiometry.scale_lx_s_per_dn);
+    EXPECT_EQ(rig.planes->position_m, original.planes->position_m);
+    EXPECT_EQ(rig.planes->camera_from_slab.rotation, original.planes->camera_from_slab.rotation);
+    EXPECT_EQ(rig.radiometry->rgb_from_raw, original.radiometry->rgb_from_raw);
+    EXPECT_EQ(rig.radiometry->scale_lx_s_per_dn, original.radiometry->scale_lx_s_per_dn);
 }
 
 TEST(Rig, NamesWhatIsWrongInItsFile) {
@@ -83,6 +83,19 @@ TEST(Rig, NamesWhatIsWrongInItsFile) {
                 HasSubstr("ascending"));
     EXPECT_THAT(refusal_with([](Json& json) { json["covariance"].erase(0); }),
                 HasSubstr("covariance"));
+}
+
+TEST(Rig, MayBeALensAlone) {
+    Rig lens_alone;
+    lens_alone.lens = test::small_rig().lens;
+    write_rig(lens_alone, {}, std::nullopt, "lens.json");
+    const Rig rig = read_rig("lens.json");
+    EXPECT_EQ(rig.lens->fx_px, lens_alone.lens->fx_px);
+    EXPECT_FALSE(rig.planes || rig.radiometry);
+    EXPECT_FALSE(std::filesystem::exists("lens.maps.exr"));
+    EXPECT_THAT(message_of([] { read_maps("lens.json"); }), HasSubstr("maps"));
+    EXPECT_THAT(message_of([] { write_rig({}, {}, std::nullopt, "nothing.json"); }),
+                HasSubstr("a lens or radiometry"));
 }
 
 TEST(Rig, RefusesMapsThatAreNotItsOwn) {

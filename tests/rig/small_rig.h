@@ -10,7 +10,7 @@ inline Rig small_rig() {
     Rig rig;
     rig.lens = {
         LensModel::Brown5, {6, 4}, 800.25, 801.5, 3.1, 2.2, {-0.1, 0.09, 4e-4, -3e-4, 0.01}};
-    Planes& planes = rig.planes;
+    Planes& planes = rig.planes.emplace();
     planes.camera_from_slab = {glm::dmat3(0, 1, 0, -1, 0, 0, 0, 0, 1), {0.02, -0.03, 0.8}};
     planes.delta_m = 0.2001;
     planes.u_tilt_rad = {0.002, -0.003};
@@ -20,7 +20,7 @@ inline Rig small_rig() {
     planes.filter_turn_rad = -0.0005;
     for (int k = 0; k < 6; ++k)
         planes.position_m.emplace_back(0.02 * (k % 3) - 0.02, 0.0216 * (k / 3), -0.2 - 1e-5 * k);
-    Radiometry& radiometry = rig.radiometry;
+    Radiometry& radiometry = rig.radiometry.emplace();
     radiometry.bits = 12;
     radiometry.mosaic = "rggb";
     radiometry.saturation_dn = 3900;
