@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/calibration_page.h"
-#include "formats/report/plot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,16 +15,6 @@ using calibrate::Geometry;
 using report::Section;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-void add(Section& section, const std::optional<report::Image>& image) {
-    constexpr const char* kNoGnuplot =
-        "A drawing is missing here: gnuplot is not installed or failed (Debian package "
-        "gnuplot-nox).";
-    if (image)
-        section.images.push_back(*image);
-    else if (section.paragraphs.empty() || section.paragraphs.back() != kNoGnuplot)
-        section.paragraphs.emplace_back(kNoGnuplot);
-}
 
 // Residual vectors of all views, outliers in red. They are enlarged so that one sigma is a visible
 // share of the picture.
@@ -98,19 +88,6 @@ report::Table view_table(const Geometry& geometry) {
     return table;
 }
 
-report::Table parameter_table(const Geometry& geometry) {
-    report::Table table{
-        "All that was estimated", {"parameter", "value", "sigma", "sigma / value"}, {}};
-    for (const rig::Parameter& parameter : geometry.parameters)
-        table.rows.push_back(
-            {parameter.name, fmt::format("{:.7g}", parameter.value),
-             fmt::format("{:.2g}", parameter.sigma),
-             parameter.value == 0
-                 ? ""
-                 : fmt::format("{:.1e}", parameter.sigma / std::abs(parameter.value))});
-    return table;
-}
-
 Section camera_section(const Geometry& geometry) {
     Section section{"The camera", {}, {}, {}, {}};
     std::size_t corners = 0;
@@ -140,10 +117,11 @@ Section camera_section(const Geometry& geometry) {
 Section knowledge_section(const Geometry& geometry) {
     Section section{"How well the camera is known", {}, {}, {}, {}};
     const glm::ivec2 size_px = geometry.lens.size_px;
-    add(section, draw(heat_map(geometry.uncertainty, size_px,
-                               "Sigma of where a far point is seen, along an axis", "px"),
-                      "Predicted from the corners' noise; what a turn of the camera explains is "
-                      "taken out."));
+    add_drawing(section,
+                draw(heat_map(geometry.uncertainty, size_px,
+                              "Sigma of where a far point is seen, along an axis", "px"),
+                     "Predicted from the corners' noise; what a turn of the camera explains is "
+                     "taken out."));
     if (geometry.halves) {
         section.paragraphs.push_back(fmt::format(
             "Two halves of the views, calibrated by themselves, see far points {:.3f} px (RMS) "
@@ -154,9 +132,10 @@ Section knowledge_section(const Geometry& geometry) {
                 ? " That is more than noise: the lens model does not fit, or the board is not what "
                   "was said."
                 : ""));
-        add(section, draw(heat_map(geometry.halves->difference, size_px,
-                                   "How far two halves of the views disagree", "px"),
-                          "Distance between two lenses' far points, the best turn taken out."));
+        add_drawing(section,
+                    draw(heat_map(geometry.halves->difference, size_px,
+                                  "How far two halves of the views disagree", "px"),
+                         "Distance between two lenses' far points, the best turn taken out."));
     }
     if (geometry.held_out)
         section.paragraphs.push_back(fmt::format(
@@ -309,7 +288,8 @@ Section planes_section(const Geometry& geometry, const calibrate::PlanesResult& 
     add(section,
         draw(scene_of(geometry, result),
              "Boards as they were seen, the planes, the camera and a quarter of its view."));
-    add(section, draw(step_map(result), "Where the filter was seen against a regular grid."));
+    add_drawing(section,
+                draw(step_map(result), "Where the filter was seen against a regular grid."));
     return section;
 }
 
@@ -319,9 +299,8 @@ std::vector<Section> geometry_sections(const Geometry& geometry) {
     std::vector<Section> sections = {camera_section(geometry), knowledge_section(geometry)};
     if (geometry.planes)
         sections.push_back(planes_section(geometry, *geometry.planes));
-    Section parameters{"Parameters", {}, {}, {}, {}};
-    parameters.tables.push_back(parameter_table(geometry));
-    sections.push_back(std::move(parameters));
+    sections.push_back(
+        {"Parameters of the geometry", {}, {}, {parameter_table(geometry.parameters)}, {}});
     return sections;
 }
 
