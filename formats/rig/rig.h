@@ -60,8 +60,9 @@ struct Curve {
 
 /// How values follow light.
 ///
-///     light = (linear(DN) - black_dn[p] - dark_dn_per_s[p] t) / (t * response[p])       in DN/s
-///     E on S = scale_lx_s_per_dn * light / screen(angle of view)                        in lx
+///     rate  = (linear(DN) - black_dn[p] - dark_dn_per_s[p] t_asked) / t_true             in DN/s
+///     light = remove_veil(rate) / response[p]                                (rig/veil.h) in DN/s
+///     E on S = scale_lx_s_per_dn * light / screen(angle of view)                          in lx
 struct Radiometry {
     int bits = 0;
     std::string mosaic = "mono";  // "mono", "rggb", "grbg", "gbrg", "bggr" or "rgb"
@@ -86,11 +87,11 @@ struct Radiometry {
     glm::dvec3 filter_peak{1.0};  // transmission at its center, by channel
 };
 
-/// Values of every pixel, [row from the top][column].
+/// Values of every pixel, [row from the top][column]; "rgb": [row][column][channel].
 struct Maps {
     glm::ivec2 size_px{0};
     std::vector<float> black_dn, dark_dn_per_s;
-    std::vector<float> response;  // of the pixel with the lens before it, about 1
+    std::vector<float> response;  // of the pixel with the lens before it; mean 1 by color, no veil
     std::vector<float> response_sigma_rel;
     std::vector<float> is_bad;  // 1: hot or dead, not to be used
 };
