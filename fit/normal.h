@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The normal equations of one texel: N = G^T W G + lambda q D^T D.
+/// The normal equations of one texel: N = G^T W G + lambda D^T Q D.
 #pragma once
 
 #include "fit/design.h"
@@ -9,17 +9,18 @@
 
 namespace nearfield::fit {
 
-/// D^T D: its entries on and below the diagonal.
+/// Differences between neighbors on the basis grid, each a row of D: sum_p stencil[p] c[first + p
+/// step].
 struct Penalty {
-    struct Entry {
-        int row = 0, column = 0;
-        double value = 0;
+    struct Difference {
+        int first = 0, step = 0;
     };
-    std::vector<Entry> lower;
-    glm::ivec2 reach{0};  // farthest neighbor along x and y
+    std::vector<double> stencil;
+    std::vector<Difference> differences;
+    int reach = 0;  // farthest neighbor along an axis
 };
 
-/// Differences of order 1 or 2 on a W x H grid; an axis too short for one has none.
+/// Order 1 (1, -1) or 2 (1, -2, 1), along x and along y of a W x H grid.
 Penalty difference_penalty(glm::ivec2 grid, int order);
 
 struct NormalEquations {
@@ -29,8 +30,8 @@ struct NormalEquations {
     std::vector<double> rhs;    // G^T W b, and zeros to `leading`
     std::vector<double> norm;   // [m]: sqrt(N_mm); 0: nothing sees it
     double data_norm = 0;       // sqrt(b^T W b)
-    double penalty_scale = 0;   // lambda q
-    int valid_count = 0;        // of measurements with weight
+    std::vector<double> penalty_weight;  // [difference]: lambda q; empty: lambda is 0
+    int valid_count = 0;                 // of measurements with weight
 
     double entry(int row, int column) const {
         return lower[static_cast<std::size_t>(column) * static_cast<std::size_t>(leading) +
@@ -47,7 +48,13 @@ void form_normal(const TexelDesign& texel,
                  double lambda,
                  NormalEquations& normal);
 
-/// Half the gradient of what is minimized, G^T W (G c - b) + lambda q D^T D c, from G and b, not
+/// Writes another right side: of other data with the same weights.
+void set_data(const TexelDesign& texel,
+              std::span<const double> b,
+              std::span<const double> weight,
+              NormalEquations& normal);
+
+/// Half the gradient of what is minimized, G^T W (G c - b) + lambda D^T Q D c, from G and b, not
 /// from N. `coeffs` and `gradient` have leading entries, `residual` (G c - b) one a measurement.
 void fill_gradient(const TexelDesign& texel,
                    const Penalty& penalty,

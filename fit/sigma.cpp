@@ -11,21 +11,22 @@ namespace {
 
 using LaneSums = std::array<double, kLanes>;
 
-// Diagonal of X P_FF X for eight columns of X, which stand in work.lanes.
+// Diagonal of X (lambda D^T Q D)_FF X for eight columns of X, which stand in work.lanes.
 LaneSums penalty_sums(const Penalty& penalty,
                       const Workspace& work,
                       const std::vector<int>& place) {
     LaneSums sums{};
-    for (const Penalty::Entry& entry : penalty.lower) {
-        const int row = place[static_cast<std::size_t>(entry.row)];
-        const int column = place[static_cast<std::size_t>(entry.column)];
-        if (row < 0 || column < 0)
-            continue;
-        const double value = (row == column ? 1.0 : 2.0) * entry.value;
-        for (int lane = 0; lane < kLanes; ++lane)
-            sums[static_cast<std::size_t>(lane)] +=
-                value * work.lanes[static_cast<std::size_t>(row * kLanes + lane)] *
-                work.lanes[static_cast<std::size_t>(column * kLanes + lane)];
+    for (std::size_t d = 0; d < work.normal.penalty_weight.size(); ++d) {
+        LaneSums difference{};
+        for (std::size_t p = 0; p < penalty.stencil.size(); ++p) {
+            const auto [first, step] = penalty.differences[d];
+            const int at = place[static_cast<std::size_t>(first + static_cast<int>(p) * step)];
+            for (std::size_t lane = 0; at >= 0 && lane < kLanes; ++lane)
+                difference[lane] +=
+                    penalty.stencil[p] * work.lanes[static_cast<std::size_t>(at) * kLanes + lane];
+        }
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            sums[lane] += work.normal.penalty_weight[d] * difference[lane] * difference[lane];
     }
     return sums;
 }
@@ -53,11 +54,11 @@ void fill_free(const Penalty& penalty,
             work.lanes[static_cast<std::size_t>((begin + lane) * kLanes + lane)] = 1.0;
         solve_lower(work.factor, work.lanes.data());
         LaneSums variance = squared_norms(work);
-        if (work.normal.penalty_scale > 0.0) {
+        if (!work.normal.penalty_weight.empty()) {
             solve_upper(work.factor, work.lanes.data());
             const LaneSums smoothed = penalty_sums(penalty, work, place);
             for (std::size_t lane = 0; lane < kLanes; ++lane)
-                variance[lane] -= work.normal.penalty_scale * smoothed[lane];
+                variance[lane] -= smoothed[lane];
         }
         for (int lane = 0; lane < lanes; ++lane)
             fit.sigma[static_cast<std::size_t>(

@@ -7,7 +7,7 @@ namespace nearfield::fit {
 
 /// Fills fit.sigma from the factor and gradient that solve_texel left in `work`.
 ///
-///     free    X = N_FF^-1;  covariance of c_F = X (G^T W G)_FF X = X - lambda q X (D^T D)_FF X
+///     free    X = N_FF^-1;  covariance of c_F = X (G^T W G)_FF X = X - lambda X (D^T Q D)_FF X
 ///     bound   s = N_mm - N_mF X N_Fm;  freed alone it would be -g_m / s, with variance 1 / s
 ///
 /// For lambda > 0 the first is the spread that noise gives, without what smoothing leaves out, the

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace nearfield::fit {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kGradientRounding = 1e-13;
 // rounding (n eps = 2e-14), far below what data determine.
 constexpr double kRidge = 1e-12;
 // Exchanges of all at once that may fail to lessen the breaches, before one at a time.
-constexpr int kPatience = 3;
+constexpr int kPatience = 4;
 
 struct Problem {
     const TexelDesign& texel;
@@ -43,8 +44,8 @@ void check_data(const Problem& problem) {
 // 0 in the first rows, where the reach is cut off.
 int band_begin(const Problem& problem, int m) {
     const int columns = problem.texel.grid.x;
-    const int reach_x = std::max(problem.texel.width - 1, problem.penalty.reach.x);
-    const int reach_y = std::max(problem.texel.height - 1, problem.penalty.reach.y);
+    const int reach_x = std::max(problem.texel.width - 1, problem.penalty.reach);
+    const int reach_y = std::max(problem.texel.height - 1, problem.penalty.reach);
     const int row = m / columns - reach_y;
     return row < 0 ? 0 : row * columns + std::max(0, m % columns - reach_x);
 }
@@ -103,34 +104,89 @@ bool is_breach(const Workspace& work, const TexelFit& fit, std::size_t m) {
     return work.gradient[m] < -kGradientRounding * scale;
 }
 
-// Which coefficients change sides next: all that break a condition, or the last of them alone where
-// that has not lessened their number for a while (Murty's rule, which always ends).
-struct Exchange {
-    std::size_t fewest;
-    int patience = kPatience;
-    std::vector<std::size_t> breaches;
-
-    // False where no condition is broken.
-    bool step(const Workspace& work, TexelFit& fit) {
+// Block principal pivoting: all coefficients that break a condition change sides at once. True at
+// the minimum; false where that has not lessened their number for a while.
+bool exchange_blocks(const Problem& problem, Workspace& work, TexelFit& fit) {
+    std::size_t fewest = fit.is_free.size() + 1;
+    std::vector<std::size_t>& breaches = work.breaches;
+    for (int patience = kPatience; patience > 0;) {
+        solve_free(problem, work, fit);
+        update_gradient(problem, work);
         breaches.clear();
         for (std::size_t m = 0; m < fit.is_free.size(); ++m)
             if (is_breach(work, fit, m))
                 breaches.push_back(m);
         if (breaches.empty())
-            return false;
+            return true;
         if (breaches.size() < fewest) {
             fewest = breaches.size();
             patience = kPatience;
-        } else if (patience > 0) {
-            --patience;
         } else {
-            breaches = {breaches.back()};
+            --patience;
         }
         for (const std::size_t m : breaches)
             fit.is_free[m] ^= 1U;
-        return true;
     }
-};
+    return false;
+}
+
+// Moves `coeffs` towards the minimum over the free coefficients as far as all stay >= 0; what stops
+// it is bound. True where it arrives.
+bool step_feasibly(Workspace& work, TexelFit& fit, std::vector<double>& coeffs) {
+    const std::vector<double>& target = work.coeffs_padded;
+    double share = 1.0;
+    for (std::size_t m = 0; m < coeffs.size(); ++m)
+        if (fit.is_free[m] != 0 && target[m] <= 0.0)
+            share = std::min(share, coeffs[m] / (coeffs[m] - target[m]));
+    bool has_arrived = true;
+    for (std::size_t m = 0; m < coeffs.size(); ++m) {
+        if (fit.is_free[m] == 0)
+            continue;
+        coeffs[m] += share * (target[m] - coeffs[m]);
+        if (target[m] <= 0.0 && coeffs[m] <= 1e-14 * -target[m]) {
+            coeffs[m] = 0.0;
+            fit.is_free[m] = 0;
+            has_arrived = false;
+        }
+    }
+    return has_arrived;
+}
+
+// The bound coefficient that would gain most, as a cosine.
+std::optional<std::size_t> steepest(const Workspace& work, const TexelFit& fit) {
+    std::optional<std::size_t> best;
+    double least = 0.0;
+    for (std::size_t m = 0; m < fit.is_free.size(); ++m)
+        if (fit.is_free[m] == 0 && is_breach(work, fit, m) &&
+            work.gradient[m] / work.normal.norm[m] < least) {
+            least = work.gradient[m] / work.normal.norm[m];
+            best = m;
+        }
+    return best;
+}
+
+// The primal active-set method from a feasible start: one coefficient at a time, and what is
+// minimized falls with every step. For nearly singular problems, on which exchanges of blocks go
+// round in circles.
+bool exchange_singly(const Problem& problem, Workspace& work, TexelFit& fit) {
+    std::vector<double> coeffs(fit.is_free.size());
+    for (std::size_t m = 0; m < coeffs.size(); ++m) {
+        coeffs[m] = std::max(0.0, work.coeffs_padded[m]);
+        fit.is_free[m] = coeffs[m] > 0.0 ? 1 : 0;
+    }
+    const int most_steps = 20 * work.normal.size;
+    for (int step = 0; step < most_steps; ++step) {
+        solve_free(problem, work, fit);
+        if (!step_feasibly(work, fit, coeffs))
+            continue;
+        update_gradient(problem, work);
+        const std::optional<std::size_t> next = steepest(work, fit);
+        if (!next)
+            return true;
+        fit.is_free[*next] = 1;
+    }
+    return false;
+}
 
 double kkt_residual(const Workspace& work) {
     double worst = 0.0;
@@ -142,6 +198,33 @@ double kkt_residual(const Workspace& work) {
         worst = std::max(worst, (work.coeffs_padded[m] > 0.0 ? std::abs(g) : -g) / scale);
     }
     return worst;
+}
+
+// From fit.is_free to the minimum, with the normal equations that stand in `work`.
+void minimize(const Problem& problem, Workspace& work, TexelFit& fit) {
+    const auto n = static_cast<std::size_t>(work.normal.size);
+    work.coeffs_padded.resize(static_cast<std::size_t>(work.normal.leading));
+    if (fit.is_free.size() != n)
+        fit.is_free.assign(n, 1);
+    for (std::size_t m = 0; m < n; ++m)
+        if (work.normal.norm[m] == 0.0)
+            fit.is_free[m] = 0;
+    fit.factorizations = 0;
+
+    fit.has_converged = exchange_blocks(problem, work, fit) || exchange_singly(problem, work, fit);
+    for (double& c : work.coeffs_padded)
+        c = std::max(c, 0.0);
+    if (!fit.has_converged)
+        update_gradient(problem, work);
+
+    fit.coeffs.assign(work.coeffs_padded.begin(),
+                      work.coeffs_padded.begin() + static_cast<std::ptrdiff_t>(n));
+    fit.kkt_rel = kkt_residual(work);
+    fit.valid_count = work.normal.valid_count;
+    fit.free_count = static_cast<int>(work.free_index.size());
+    fit.chi_square = 0.0;
+    for (std::size_t k = 0; k < problem.b.size(); ++k)
+        fit.chi_square += problem.weight[k] * work.residual[k] * work.residual[k];
 }
 
 }  // namespace
@@ -156,41 +239,20 @@ void solve_texel(const TexelDesign& texel,
     const Problem problem{texel, penalty, b, weight};
     check_data(problem);
     form_normal(texel, penalty, b, weight, options.lambda, work.normal);
-    const auto n = static_cast<std::size_t>(work.normal.size);
-    work.coeffs_padded.resize(static_cast<std::size_t>(work.normal.leading));
-    if (fit.is_free.size() != n)
-        fit.is_free.assign(n, 1);
-    for (std::size_t m = 0; m < n; ++m)
-        if (work.normal.norm[m] == 0.0)
-            fit.is_free[m] = 0;
-    fit.factorizations = 0;
-
-    // The count of steps is finite by construction; the limit is against rounding alone.
-    const int most_steps = 20 + 3 * work.normal.size;
-    Exchange exchange{n + 1, kPatience, {}};
-    fit.has_converged = false;
-    for (int step = 0; step < most_steps && !fit.has_converged; ++step) {
-        solve_free(problem, work, fit);
-        update_gradient(problem, work);
-        fit.has_converged = !exchange.step(work, fit);
-    }
-    if (!fit.has_converged) {
-        solve_free(problem, work, fit);
-        for (double& c : work.coeffs_padded)
-            c = std::max(c, 0.0);
-        update_gradient(problem, work);
-    }
-
-    fit.coeffs.assign(work.coeffs_padded.begin(),
-                      work.coeffs_padded.begin() + static_cast<std::ptrdiff_t>(n));
-    fit.kkt_rel = kkt_residual(work);
-    fit.valid_count = work.normal.valid_count;
-    fit.free_count = static_cast<int>(work.free_index.size());
-    fit.chi_square = 0.0;
-    for (std::size_t k = 0; k < b.size(); ++k)
-        fit.chi_square += weight[k] * work.residual[k] * work.residual[k];
+    minimize(problem, work, fit);
     if (options.wants_sigma)
         fill_sigma(penalty, work, fit);
+}
+
+void solve_again(const TexelDesign& texel,
+                 const Penalty& penalty,
+                 std::span<const double> b,
+                 std::span<const double> weight,
+                 Workspace& work,
+                 TexelFit& fit) {
+    const Problem problem{texel, penalty, b, weight};
+    set_data(texel, b, weight, work.normal);
+    minimize(problem, work, fit);
 }
 
 }  // namespace nearfield::fit

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The coefficients of one texel and channel: weighted non-negative least squares with smoothness.
 ///
-///     minimize  sum_k w_k (b_k - sum_m G_km c_m)^2 + lambda q |D c|^2   subject to c >= 0
+///     minimize  sum_k w_k (b_k - sum_m G_km c_m)^2 + lambda sum_d q_d (D c)_d^2,   c >= 0
 ///
 /// w_k = 1 / variance, 0 where a measurement is missing or saturated. D: differences of first or
-/// second order between neighbors on the basis grid, along x and along y. q is the mean diagonal
-/// entry of G^T W G, so that lambda has no unit and one lambda does for all texels: a texel's
-/// solution does not change when its light or its noise is scaled.
+/// second order between neighbors on the basis grid, along x and along y. q_d is the harmonic mean
+/// of (G^T W G)_mm over the difference's coefficients: what the data know of the least known of
+/// them. So lambda has no unit, and one lambda does for all texels, bright or dark: a solution does
+/// not change when light and noise are scaled.
 ///
 /// Method    Block principal pivoting on the normal equations: the free coefficients are solved for
-///           by a banded Cholesky factorization, those that break a condition change sides, all at
-///           once, or one at a time where that makes no headway. It ends at the one minimum, which
-///           the residual of the Karush-Kuhn-Tucker conditions proves, computed from G and b again.
+///           by a banded Cholesky factorization; those that break a condition change sides all at
+///           once. Where that goes round in circles (nearly singular problems) the primal
+///           active-set method ends it. The residual of the Karush-Kuhn-Tucker conditions proves
+///           the minimum; it is computed from G and b, not from the factored matrix.
 /// Source    Portugal, Judice, Vicente, "A comparison of block pivoting and interior-point
 ///           algorithms for linear least squares problems with nonnegative variables", 1994; Kim
 ///           and Park, "Fast nonnegative matrix factorization: an active-set-like method and
@@ -56,6 +58,7 @@ struct Workspace {
     NormalEquations normal;
     BandMatrix factor;
     std::vector<int> free_index;  // [position in factor]: m
+    std::vector<std::size_t> breaches;
     std::vector<double> coeffs_padded, gradient, residual, right_side, lanes;
 };
 
@@ -67,6 +70,14 @@ void solve_texel(const TexelDesign& texel,
                  std::span<const double> b,
                  std::span<const double> weight,
                  const SolveOptions& options,
+                 Workspace& work,
+                 TexelFit& fit);
+
+/// Fits other data with the weights, lambda and texel of the last solve_texel in `work`; no sigma.
+void solve_again(const TexelDesign& texel,
+                 const Penalty& penalty,
+                 std::span<const double> b,
+                 std::span<const double> weight,
                  Workspace& work,
                  TexelFit& fit);
 

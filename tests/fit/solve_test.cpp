@@ -48,17 +48,18 @@ std::vector<double> dense_solution(const TexelDesign& texel,
                                    int order) {
     const int columns = texel.grid.x, n = columns * texel.grid.y;
     std::vector<double> a = dense(texel), b = data.b;
-    double trace = 0.0;
+    std::vector<double> inverse(static_cast<std::size_t>(n), 0.0);
     for (std::size_t k = 0; k < b.size(); ++k) {
         const double root = std::sqrt(data.weight[k]);
         b[k] *= root;
         for (int m = 0; m < n; ++m) {
             double& entry = a[k * static_cast<std::size_t>(n) + static_cast<std::size_t>(m)];
             entry *= root;
-            trace += entry * entry;
+            inverse[static_cast<std::size_t>(m)] += entry * entry;
         }
     }
-    const double root = std::sqrt(lambda * trace / n);
+    for (double& d : inverse)
+        d = 1.0 / d;
     const std::vector<double> stencil =
         order == 1 ? std::vector<double>{-1, 1} : std::vector<double>{1, -2, 1};
     for (int m = 0; m < n; ++m)
@@ -68,6 +69,10 @@ std::vector<double> dense_solution(const TexelDesign& texel,
             if (place + order >= length)
                 continue;
             std::vector<double> row(static_cast<std::size_t>(n), 0.0);
+            double sum = 0.0;
+            for (int p = 0; p <= order; ++p)
+                sum += inverse[static_cast<std::size_t>(m + p * step)];
+            const double root = std::sqrt(lambda * (order + 1) / sum);
             for (int p = 0; p <= order; ++p)
                 row[static_cast<std::size_t>(m + p * step)] =
                     root * stencil[static_cast<std::size_t>(p)];
