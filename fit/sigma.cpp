@@ -100,7 +100,7 @@ double one_sided_rms(double ratio) {
     constexpr double kFar = 25.0;
     const double square = ratio * ratio;
     if (ratio > kFar)
-        return std::sqrt(2.0 / square - 10.0 / (square * square));
+        return std::sqrt(2.0 / square * (1.0 - (5.0 - 37.0 / square) / square));
     const double tail = 0.5 * std::erfc(ratio * std::sqrt(0.5));
     const double density = std::exp(-0.5 * square) / std::sqrt(2.0 * std::acos(-1.0));
     return std::sqrt(1.0 + square - ratio * density / tail);
