@@ -99,7 +99,8 @@ Section camera_section(const Geometry& geometry) {
                     "axis {:.3f} px. {} corners further off than the limit were left out.",
                     corners, geometry.views.size(), geometry.rms_px, geometry.corner_sigma_px,
                     geometry.outliers.size()));
-    add_drawing(section,
+    add_drawing(
+        section,
         draw(residual_map(geometry),
              "Observed minus predicted. Arrows without order are noise; arrows that agree "
              "with their neighbors are a lens or a board that the model does not describe."));
@@ -285,7 +286,8 @@ Section planes_section(const Geometry& geometry, const calibrate::PlanesResult& 
                           1e6 * result.step_sigma_m)
             : std::string(
                   "Too few filter positions were seen to tell how well the stage keeps them."));
-    add_drawing(section,
+    add_drawing(
+        section,
         draw(scene_of(geometry, result),
              "Boards as they were seen, the planes, the camera and a quarter of its view."));
     add_drawing(section,

@@ -28,7 +28,6 @@ report::Section first_section(const calibrate::Calibration& calibration) {
     return section;
 }
 
-// Sigma falls with the root of the number of views: how many of them a tenth of the error costs.
 report::Section more_section(const calibrate::Geometry& geometry) {
     report::Section section{"What more pictures would buy", {}, {}, {}, {}};
     section.paragraphs.emplace_back(
@@ -36,9 +35,10 @@ report::Section more_section(const calibrate::Geometry& geometry) {
     report::Table table{"Sigma", {"parameter", "now"}, {}};
     for (const calibrate::MoreViews& more : geometry.more_views)
         table.columns.push_back(more.what);
-    for (std::size_t k = 0; k < geometry.more_parameters.size(); ++k) {
-        std::vector<std::string> row = {geometry.more_parameters[k].name,
-                                        fmt::format("{:.2g}", geometry.more_parameters[k].sigma)};
+    for (std::size_t k = 0;
+         k < geometry.parameters.size() && k < geometry.more_views.front().sigma.size(); ++k) {
+        std::vector<std::string> row = {geometry.parameters[k].name,
+                                        fmt::format("{:.2g}", geometry.parameters[k].sigma)};
         for (const calibrate::MoreViews& more : geometry.more_views)
             row.push_back(fmt::format("{:.2g}", more.sigma[k]));
         table.rows.push_back(std::move(row));

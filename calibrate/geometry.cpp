@@ -2,6 +2,7 @@
 #include "calibrate/geometry.h"
 
 #include "calibrate/initial_pose.h"
+#include "calibrate/more_views.h"
 #include "calibrate/plane_frames.h"
 #include "calibrate/robust_fit.h"
 #include "calibrate/validation.h"
@@ -179,7 +180,8 @@ void fill_parameters(const Fitted& fitted, const Eigen::MatrixXd& shared, Geomet
     const Eigen::Index count = direct + planes.values.size();
     Eigen::MatrixXd by_shared = Eigen::MatrixXd::Zero(count, layout.count);
     by_shared.topLeftCorner(direct, direct).setIdentity();
-    by_shared.bottomRows(planes.values.size()) = planes.by_shared;
+    if (bundle.has_planes)
+        by_shared.bottomRows(planes.values.size()) = planes.by_shared;
     names.insert(names.end(), planes.names.begin(), planes.names.end());
     values.insert(values.end(), planes.values.begin(), planes.values.end());
     const Eigen::MatrixXd covariance = by_shared * shared * by_shared.transpose();
@@ -191,6 +193,24 @@ void fill_parameters(const Fitted& fitted, const Eigen::MatrixXd& shared, Geomet
             geometry.covariance.push_back(covariance(i, j));
     }
     geometry.covariance_of = names;
+}
+
+// Sigmas of the same parameters if views of one kind counted twice.
+std::vector<MoreViews> more_views(const Fitted& fitted, const Observations& observations) {
+    std::vector<MoreViews> all;
+    for (CountedTwice& twice : counted_twice(fitted, observations)) {
+        const auto covariance = shared_covariance(twice.fitted.bundle, twice.observations,
+                                                  twice.fitted.weights, twice.fitted.choice);
+        if (!covariance)
+            continue;
+        Geometry then;
+        fill_parameters(twice.fitted, covariance->matrix, then);
+        MoreViews more{twice.what, {}};
+        for (const rig::Parameter& parameter : then.parameters)
+            more.sigma.push_back(parameter.sigma);
+        all.push_back(std::move(more));
+    }
+    return all;
 }
 
 // Views as they were fitted, without outliers.
@@ -246,6 +266,8 @@ Geometry calibrate_geometry(const Observations& observations, const GeometryOpti
     const auto numbers = static_cast<Eigen::Index>(fitted.bundle.lens.size());
     geometry.uncertainty = uncertainty_map(
         fitted.bundle, covariance.matrix.topLeftCorner(numbers, numbers), options.map_points);
+    if (options.with_validation)
+        geometry.more_views = more_views(fitted, usable);
     if (options.with_validation)
         validate(lens_fit, usable, settings, options, geometry);
     geometry.iterations = fitted.iterations;

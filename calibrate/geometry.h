@@ -114,12 +114,19 @@ struct PlanesResult {
     ParallelCost parallel;
 };
 
+/// Sigmas if views of one kind counted twice, [parameter]: what as many again would buy.
+struct MoreViews {
+    std::string what;
+    std::vector<double> sigma;
+};
+
 struct Geometry {
     rig::Lens lens;
     std::optional<PlanesResult> planes;
     std::vector<rig::Parameter> parameters;  // lens, then planes
     std::vector<std::string> covariance_of;  // their names, in the matrix' order
     std::vector<double> covariance;          // row by row
+    std::vector<MoreViews> more_views;       // with validation
     std::vector<ViewResult> views;
     std::vector<Outlier> outliers;
     std::vector<UnusedView> unused;

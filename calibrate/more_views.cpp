@@ -9,7 +9,9 @@ namespace {
 
 using capture::TargetPlane;
 
-CountedTwice with_boards_twice(const Fitted& fitted, const Observations& observations, TargetPlane plane) {
+CountedTwice with_boards_twice(const Fitted& fitted,
+                               const Observations& observations,
+                               TargetPlane plane) {
     CountedTwice twice{"", fitted, observations};
     for (std::size_t view = 0; view < observations.boards.size(); ++view) {
         if (observations.boards[view].plane != plane)

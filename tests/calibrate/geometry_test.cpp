@@ -62,10 +62,10 @@ TEST_P(EveryModel, PerfectCornersAreRecovered) {
 INSTANTIATE_TEST_SUITE_P(Geometry,
                          EveryModel,
                          testing::Values(LensModel::Brown5, LensModel::Brown8, LensModel::Fisheye),
-                         [](const auto& info) {
-                             return std::string(info.param == LensModel::Brown5   ? "Brown5"
-                                                : info.param == LensModel::Brown8 ? "Brown8"
-                                                                                  : "Fisheye");
+                         [](const auto& model) {
+                             return std::string(model.param == LensModel::Brown5   ? "Brown5"
+                                                : model.param == LensModel::Brown8 ? "Brown8"
+                                                                                   : "Fisheye");
                          });
 
 TEST(Geometry, NoisyCornersAreRecoveredWithinTheirSigmas) {
@@ -104,7 +104,7 @@ TEST(Geometry, SeenPositionsAreKnownBetter) {
     options.with_validation = false;
     const Geometry found = calibrate_geometry(test::observed(truth, {5, 0.03, 0.01}), options);
     const PlanesResult& planes = *found.planes;
-    EXPECT_LT(planes.position_sigma_m[0], 0.6 * planes.step_sigma_m);
+    EXPECT_LT(planes.position_sigma_m[0], 0.7 * planes.step_sigma_m);
     EXPECT_GT(planes.position_sigma_m[1], planes.step_sigma_m);
     ASSERT_EQ(planes.filters.size(), 9U);
     for (const FilterResult& filter : planes.filters) {
@@ -141,14 +141,14 @@ TEST(Geometry, OutliersAreNamedAndLeftOut) {
             << parameter.name;
 }
 
-// A fisheye taken for Brown's lens: residuals, but above all views that were not fitted.
+// A decentered lens taken for one that is radial: residuals, and views that were not fitted.
 TEST(Geometry, AWrongModelShowsInHeldOutViewsAndHalves) {
-    SimulatedBench truth = test::simulated_bench(LensModel::Brown8, 16, 0.0);
-    truth.lens.distortion = {-0.5, 0.3, 0.0004, -0.0003, 0.4, 1.5, -2.0, 6.0};
+    SimulatedBench truth = test::simulated_bench(LensModel::Brown5, 16, 0.0);
+    truth.lens.distortion = {-0.11, 0.09, 0.02, -0.015, 0.02};
     const Observations seen = test::observed(truth, {8, 0.05, 0.02});
     GeometryOptions right, wrong;
     right.with_planes = wrong.with_planes = false;
-    right.lens_model = LensModel::Brown8;
+    right.lens_model = LensModel::Brown5;
     wrong.lens_model = LensModel::Fisheye;
     const Geometry good = calibrate_geometry(seen, right), bad = calibrate_geometry(seen, wrong);
     // Two numbers a corner of 0.05 px each.
