@@ -195,6 +195,14 @@ class Rectifier {
     std::vector<RectifyMap> maps_;  // [raw color]
 };
 
+// Where nothing was seen a coefficient could be as bright as any.
+void bound_sigma(Slab& slab) {
+    const float brightest = *std::max_element(slab.coeffs.begin(), slab.coeffs.end());
+    for (float& sigma : slab.sigma)
+        if (!std::isfinite(sigma))
+            sigma = brightest;
+}
+
 // Rows about the brightest one, in which smoothness is chosen.
 TileRange bright_rows(const TexelSpool& spool, const Slab& planes, int positions) {
     constexpr int kRows = 12;
@@ -348,6 +356,7 @@ CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& 
                 options.progress(kMergeShare + (1 - kMergeShare) * fraction, "solve");
         });
     fit.solve_s = now_s() - chosen_s;
+    bound_sigma(slab);
     fit.lightfield.scale_sigma_rel =
         std::hypot(rig.radiometry->scale_sigma_rel, rig.radiometry->scale_systematic_rel);
     fit.lightfield.slabs = {std::move(slab)};

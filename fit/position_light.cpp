@@ -67,59 +67,83 @@ class ReferenceMean {
     std::vector<std::size_t> pixels_;
 };
 
-// Pixels that are not known get the mean of the known ones beside them, wave by wave from the edge
-// of the hole inwards.
-void fill_unknown(std::vector<float>& light,
-                  const std::vector<float>& variance,
-                  glm::ivec2 size_px) {
+// Known neighbors to the left, right, above and below.
+struct Neighbors {
+    double sum = 0, squares = 0, variance = 0;
+    int count = 0;
+};
+
+Neighbors known_neighbors(const MergedImage& image,
+                          const std::vector<char>& is_known,
+                          std::size_t k) {
+    const auto width = static_cast<std::size_t>(image.size_px.x);
+    Neighbors neighbors;
+    const auto look = [&](bool is_inside, std::size_t neighbor) {
+        if (!is_inside || is_known[neighbor] == 0)
+            return;
+        const double light = double(image.light_dn_per_s[neighbor]);
+        neighbors.sum += light;
+        neighbors.squares += light * light;
+        neighbors.variance += double(image.variance[neighbor]);
+        ++neighbors.count;
+    };
+    look(k % width > 0, k - 1);
+    look(k % width + 1 < width, k + 1);
+    look(k >= width, k - width);
+    look(k + width < is_known.size(), k + width);
+    return neighbors;
+}
+
+// Bad pixels take the mean of the known ones beside them, with their noise and their spread.
+void bridge_bad_pixels(const std::vector<float>& is_bad, MergedImage& image) {
+    std::vector<char> is_known(is_bad.size());
+    for (std::size_t k = 0; k < is_bad.size(); ++k)
+        is_known[k] = std::isfinite(image.variance[k]) ? 1 : 0;
+    for (std::size_t k = 0; k < is_bad.size(); ++k) {
+        if (is_bad[k] == 0.0F)
+            continue;
+        const Neighbors neighbors = known_neighbors(image, is_known, k);
+        constexpr int kLeast = 2;
+        if (neighbors.count < kLeast)
+            continue;
+        const double mean = neighbors.sum / neighbors.count;
+        const double spread = std::max(0.0, neighbors.squares / neighbors.count - mean * mean);
+        image.light_dn_per_s[k] = static_cast<float>(mean);
+        image.variance[k] = static_cast<float>(spread + neighbors.variance / neighbors.count);
+    }
+}
+
+// Light with unknown pixels filled wave by wave from the edge of the hole inwards.
+std::vector<float> filled_light(MergedImage image) {
+    std::vector<char> is_known(image.light_dn_per_s.size());
     std::vector<std::size_t> unknown;
-    std::vector<char> is_known(light.size(), 1);
-    for (std::size_t k = 0; k < light.size(); ++k)
-        if (std::isinf(variance[k])) {
+    for (std::size_t k = 0; k < is_known.size(); ++k) {
+        is_known[k] = std::isfinite(image.variance[k]) ? 1 : 0;
+        if (is_known[k] == 0)
             unknown.push_back(k);
-            is_known[k] = 0;
-        }
-    const auto width = static_cast<std::ptrdiff_t>(size_px.x);
+    }
     while (!unknown.empty()) {
-        std::vector<std::pair<std::size_t, float>> filled;
-        std::vector<std::size_t> left;
+        std::vector<std::size_t> filled, left;
         for (const std::size_t k : unknown) {
-            const auto x = static_cast<std::ptrdiff_t>(k) % width;
-            double sum = 0;
-            int count = 0;
-            const auto look = [&](std::ptrdiff_t step, bool is_inside) {
-                const auto neighbor =
-                    static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + step);
-                if (is_inside && neighbor < light.size() && is_known[neighbor] != 0) {
-                    sum += double(light[neighbor]);
-                    ++count;
-                }
-            };
-            look(-1, x > 0);
-            look(1, x + 1 < width);
-            look(-width, static_cast<std::ptrdiff_t>(k) >= width);
-            look(width, true);
-            if (count > 0)
-                filled.emplace_back(k, static_cast<float>(sum / count));
-            else
-                left.push_back(k);
+            const Neighbors neighbors = known_neighbors(image, is_known, k);
+            (neighbors.count > 0 ? filled : left).push_back(k);
+            if (neighbors.count > 0)
+                image.light_dn_per_s[k] = static_cast<float>(neighbors.sum / neighbors.count);
         }
         if (filled.empty())
-            return;  // nothing is known anywhere
-        for (const auto& [k, value] : filled) {
-            light[k] = value;
+            break;  // nothing is known anywhere
+        for (const std::size_t k : filled)
             is_known[k] = 1;
-        }
         unknown = std::move(left);
     }
+    return std::move(image.light_dn_per_s);
 }
 
 void take_off_veil(const Measurement& measurement, MergedImage& image) {
     const rig::Radiometry& radiometry = *measurement.rig.radiometry;
     if (radiometry.veil_share == 0)
         return;
-    std::vector<float> filled = image.light_dn_per_s;
-    fill_unknown(filled, image.variance, image.size_px);
+    std::vector<float> filled = filled_light(image);
     // The veil is spread over what the sensor sees, the response is the lens' and the pixel's own.
     for (std::size_t k = 0; k < filled.size(); ++k)
         filled[k] *= measurement.maps.response[k];
@@ -220,6 +244,7 @@ MergedImage position_light(const Measurement& measurement,
     }
     MergedImage image = merge_frames(exposed, *measurement.rig.radiometry, measurement.maps,
                                      dark_factor(*measurement.rig.radiometry, position));
+    bridge_bad_pixels(measurement.maps.is_bad, image);
     take_off_veil(measurement, image);
     for (std::size_t k = 0; k < image.light_dn_per_s.size(); ++k) {
         image.light_dn_per_s[k] /= static_cast<float>(factor);

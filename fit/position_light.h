@@ -53,8 +53,8 @@ class LampDrift {
 };
 
 /// Merged light of a position in DN/s of pixels of response 1: drift and the lens' veil taken off.
-/// Pixels that are not known (saturated, bad) have infinite variance; for the veil that they spread
-/// their neighbors stand in.
+/// Bad pixels are bridged by their neighbors, whose spread becomes variance. Saturated ones have
+/// infinite variance; for the veil that they spread their neighbors stand in.
 MergedImage position_light(const Measurement& measurement,
                            const PositionFrames& position,
                            const LampDrift& drift);
