@@ -40,6 +40,7 @@ Provenance provenance_of(const FitCommand& command, const fit::CaptureFit& resul
         {"extent-m", fmt::format("{},{},{},{}", slab.s_min_m.x, slab.s_min_m.y, slab.s_max_m.x,
                                  slab.s_max_m.y)},
         {"lambda", fmt::format("{:g}", result.lambda)},
+        {"model-error-rel", fmt::format("{:g}", command.options.model_error_rel)},
         {"replicates", fmt::format("{}", command.options.replicates)},
         {"seed", fmt::format("{}", command.options.seed)}};
     provenance.inputs = {describe_input(command.capture + "/capture.json"),
@@ -152,6 +153,8 @@ void add_fit(CLI::App& app) {
                "of the brightest light: what still counts as lit");
     add_number(*sub, "--lambda", c->options.lambda, 0.0, 1e6, "N",
                "smoothness; without it by cross-validation over positions");
+    add_number(*sub, "--model-error-rel", c->options.model_error_rel, 0.0, 1.0, "SHARE",
+               "what rig and basis get wrong, of a texel's brightest position; added to sigma");
     add_number(*sub, "--flux-lm", c->flux_lm, 0.0, 1e12, "LM",
                "flux that was measured otherwise (an integrating sphere), to be compared");
     add_number(*sub, "--flux-limit-rel", c->flux_limit_rel, 0.0, 10.0, "SHARE",

@@ -203,6 +203,29 @@ void bound_sigma(Slab& slab) {
             sigma = brightest;
 }
 
+// Rows of texels with the model's own error in their variance.
+TileInput read_tile(const TexelSpool& spool,
+                    TileRange rows,
+                    const Slab& planes,
+                    int positions,
+                    double model_error_rel) {
+    TileInput tile = spool.read(rows);
+    const std::size_t count =
+        static_cast<std::size_t>(rows.row_count) * static_cast<std::size_t>(planes.texels.x);
+    const auto measurements = static_cast<std::size_t>(positions);
+    for (std::size_t channel = 0; channel < static_cast<std::size_t>(planes.channels); ++channel)
+        for (std::size_t t = 0; t < count; ++t) {
+            float brightest = 0.0F;
+            for (std::size_t k = 0; k < measurements; ++k)
+                brightest =
+                    std::max(brightest, tile.value[(channel * measurements + k) * count + t]);
+            const float error = static_cast<float>(model_error_rel) * brightest;
+            for (std::size_t k = 0; k < measurements; ++k)
+                tile.variance[(channel * measurements + k) * count + t] += error * error;
+        }
+    return tile;
+}
+
 // Rows about the brightest one, in which smoothness is chosen.
 TileRange bright_rows(const TexelSpool& spool, const Slab& planes, int positions) {
     constexpr int kRows = 12;
@@ -271,6 +294,7 @@ void fill_spool(const Measurement& measurement,
 void choose_smoothness(const Design& design,
                        const TexelSpool& spool,
                        const Slab& planes,
+                       double model_error_rel,
                        FitOptions& solve,
                        CaptureFit& fit) {
     constexpr int kTexelsAsked = 50;  // of a row
@@ -278,7 +302,8 @@ void choose_smoothness(const Design& design,
     smoothness.texel_step = std::max(1, planes.texels.x / kTexelsAsked);
     smoothness.folds = std::min(smoothness.folds, fit.positions);
     const TileRange rows = bright_rows(spool, planes, fit.positions);
-    fit.smoothness = cross_validate(design, solve, smoothness, rows, spool.read(rows));
+    fit.smoothness = cross_validate(design, solve, smoothness, rows,
+                                    read_tile(spool, rows, planes, fit.positions, model_error_rel));
     solve.solve.lambda = fit.smoothness.lambda[fit.smoothness.best];
 }
 
@@ -335,7 +360,7 @@ CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& 
     if (options.lambda)
         solve.solve.lambda = *options.lambda;
     else
-        choose_smoothness(design, spool, slab, solve, fit);
+        choose_smoothness(design, spool, slab, options.model_error_rel, solve, fit);
     fit.lambda = solve.solve.lambda;
     const double chosen_s = now_s();
     fit.smoothness_s = chosen_s - merged_s;
@@ -349,7 +374,10 @@ CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& 
     slab.sigma.resize(coefficients);
     fit.chi_square.resize(slab.texel_count());
     fit.report = solve_lightfield(
-        design, solve, [&](TileRange rows) { return spool.read(rows); },
+        design, solve,
+        [&](TileRange rows) {
+            return read_tile(spool, rows, slab, fit.positions, options.model_error_rel);
+        },
         [&](const TileResult& tile) { store(tile, slab, replicates, fit); },
         [&](double fraction) {
             if (options.progress)

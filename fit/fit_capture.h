@@ -23,7 +23,10 @@ struct CaptureFitOptions {
     std::optional<Extent> extent;  // of S; none: what is lit
     double dark_share = 1e-3;      // of the brightest light: what still counts as lit
     std::optional<double> lambda;  // smoothness; none: by cross-validation
-    int replicates = 0;            // bootstrap
+    /// What rig and basis get wrong, of a texel's brightest position: added to every measurement's
+    /// sigma. Without it dark positions, whose counts are known best, would rule the bright ones.
+    double model_error_rel = 0.003;
+    int replicates = 0;  // bootstrap
     std::uint64_t seed = 1;
     bool wants_color = true;  // of a camera with colors; else luminance alone
     double tile_bytes = 256e6;
