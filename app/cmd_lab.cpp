@@ -31,6 +31,8 @@ sample_data::Subject subject_of(gige::Subject subject) {
             return sample_data::Subject::Flat;
         case gige::Subject::Target:
             return sample_data::Subject::Target;
+        case gige::Subject::Filter:
+            return sample_data::Subject::Filter;
         case gige::Subject::Cap:
             return sample_data::Subject::Cap;
         case gige::Subject::Position:
@@ -58,7 +60,7 @@ gige::Lab lab_of(const sample_data::Prepared& prepared) {
     lab.is_bayer = bench.camera.mosaic == sample_data::Mosaic::Rggb;
     lab.filter_grid = bench.filter.grid;
     lab.target_views = static_cast<int>(bench.targets.views.size());
-    lab.can_open = bench.setup != sample_data::Setup::Direct;
+    lab.can_open = lab.can_see_filter = bench.setup != sample_data::Setup::Direct;
     lab.black_level_dn = bench.camera.black_level_dn;
     lab.expose = [prepared](const gige::Exposure& exposure) {
         sample_data::Shot shot = shot_of(exposure.stage, exposure.time_s);
