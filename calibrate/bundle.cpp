@@ -3,6 +3,8 @@
 
 #include "calibrate/bundle_residuals.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <limits>
 

@@ -1,181 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/bundle.h"
-#include "calibrate/bundle_residuals.h"
+#include "calibrate/bundle_problem.h"
 
-#include <Eigen/Cholesky>
-#include <ceres/ceres.h>
+#include <Eigen/Dense>
 
-#include <cmath>
-#include <memory>
-#include <vector>
+#include <algorithm>
 
 namespace nearfield::calibrate {
 namespace {
-
-// fx and fy rise and fall together: one tangent for both, one for each other number.
-class SquarePixels final : public ceres::Manifold {
-  public:
-    explicit SquarePixels(int size) : size_(size) {}
-
-    int AmbientSize() const override { return size_; }
-    int TangentSize() const override { return size_ - 1; }
-    bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-        for (int i = 0; i < size_; ++i)
-            x_plus_delta[i] = x[i] + delta[i == 0 ? 0 : i - 1];
-        return true;
-    }
-    bool PlusJacobian(const double*, double* jacobian) const override {
-        for (int i = 0; i < size_ * (size_ - 1); ++i)
-            jacobian[i] = 0.0;
-        for (int i = 0; i < size_; ++i)
-            jacobian[i * (size_ - 1) + (i == 0 ? 0 : i - 1)] = 1.0;
-        return true;
-    }
-    bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-        for (int i = 1; i < size_; ++i)
-            y_minus_x[i - 1] = y[i] - x[i];
-        return true;
-    }
-    bool MinusJacobian(const double*, double* jacobian) const override {
-        for (int i = 0; i < size_ * (size_ - 1); ++i)
-            jacobian[i] = 0.0;
-        for (int i = 1; i < size_; ++i)
-            jacobian[(i - 1) * size_ + i] = 1.0;
-        return true;
-    }
-
-  private:
-    int size_;
-};
-
-std::unique_ptr<ceres::LossFunction> loss_of(const Choice& choice) {
-    switch (choice.loss) {
-        case Loss::Huber:
-            return std::make_unique<ceres::HuberLoss>(choice.loss_scale);
-        case Loss::Cauchy:
-            return std::make_unique<ceres::CauchyLoss>(choice.loss_scale);
-        case Loss::Squares:
-            break;
-    }
-    return nullptr;
-}
-
-// The problem over a bundle, which it points into.
-struct BundleProblem {
-    std::unique_ptr<ceres::LossFunction> loss;
-    ceres::Problem problem;
-    std::vector<double*> boards;  // that have residuals
-
-    BundleProblem(const Choice& choice) : loss(loss_of(choice)), problem(options()) {}
-
-    static ceres::Problem::Options options() {
-        ceres::Problem::Options options;
-        options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-        options.disable_all_safety_checks = true;
-        return options;
-    }
-};
-
-template <rig::LensModel kModel>
-void add_corner(
-    Bundle& bundle, std::size_t view, const Corner& corner, double sigma_px, BundleProblem& to) {
-    constexpr int kLens = lens_numbers(kModel);
-    BoardPose& board = bundle.boards[view];
-    double* lens = bundle.lens.data();
-    double* bend = bundle.bend_m.data();
-    const BoardPoint point = board_point(bundle, corner);
-    if (board.plane == capture::TargetPlane::Free) {
-        using Residual = FreeCornerResidual<kModel>;
-        to.problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 2, kLens, 3, 6>(
-                                        new Residual{point, corner.at_px, sigma_px}),
-                                    to.loss.get(), lens, bend, board.numbers.data());
-        return;
-    }
-    PlaneMove& plane = board.plane == capture::TargetPlane::Screen ? bundle.s : bundle.u;
-    using Residual = PlacedCornerResidual<kModel>;
-    to.problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<Residual, 2, kLens, 3, 3, 3>(
-            new Residual{point, corner.at_px, sigma_px, plane.camera_from_anchor}),
-        to.loss.get(), lens, bend, plane.numbers.data(), board.numbers.data());
-}
-
-template <rig::LensModel kModel>
-void add_residuals(Bundle& bundle,
-                   const Observations& observations,
-                   const Weights& weights,
-                   BundleProblem& to) {
-    for (std::size_t view = 0; view < observations.boards.size(); ++view) {
-        const std::vector<Corner>& corners = observations.boards[view].corners;
-        bool is_seen = false;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            if (weights.is_outlier[view][i] != 0)
-                continue;
-            add_corner<kModel>(bundle, view, corners[i], weights.corner_sigma_px, to);
-            is_seen = true;
-        }
-        if (is_seen)
-            to.boards.push_back(bundle.boards[view].numbers.data());
-    }
-    if (!bundle.has_planes)
-        return;
-    constexpr int kLens = lens_numbers(kModel);
-    for (std::size_t i = 0; i < observations.filters.size(); ++i) {
-        const FilterView& filter = observations.filters[i];
-        using Residual = FilterResidual<kModel>;
-        to.problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<Residual, 2, kLens, 3, 6>(new Residual{
-                glm::dvec2(filter.position) - bundle.stage.middle, bundle.stage.handedness,
-                filter.center_px, weights.filter_whitening[i], bundle.u.camera_from_anchor}),
-            nullptr, bundle.lens.data(), bundle.u.numbers.data(), bundle.stage.numbers.data());
-    }
-}
-
-// A stage of one column or row has no step along it, and no skew.
-std::vector<int> known_of_stage(const StageGrid& stage) {
-    std::vector<int> known;
-    if (stage.count.x == 1)
-        known.push_back(3);
-    if (stage.count.y == 1)
-        known.push_back(4);
-    if (stage.count.x == 1 || stage.count.y == 1)
-        known.push_back(5);
-    if (stage.count.x == 1 && stage.count.y == 1)
-        known.insert(known.begin(), 2);
-    return known;
-}
-
-void set_known(Bundle& bundle, const Choice& choice, ceres::Problem& problem) {
-    if (choice.is_lens_known)
-        problem.SetParameterBlockConstant(bundle.lens.data());
-    else if (choice.has_square_pixels)
-        problem.SetManifold(bundle.lens.data(),
-                            new SquarePixels(static_cast<int>(bundle.lens.size())));
-    if (choice.is_board_flat)
-        problem.SetParameterBlockConstant(bundle.bend_m.data());
-    const std::vector<int> known = known_of_stage(bundle.stage);
-    if (bundle.has_planes && !known.empty())
-        problem.SetManifold(bundle.stage.numbers.data(), new ceres::SubsetManifold(6, known));
-}
-
-BundleProblem* problem_of(Bundle& bundle,
-                          const Observations& observations,
-                          const Weights& weights,
-                          const Choice& choice) {
-    auto made = std::make_unique<BundleProblem>(choice);
-    switch (bundle.model) {
-        case rig::LensModel::Brown5:
-            add_residuals<rig::LensModel::Brown5>(bundle, observations, weights, *made);
-            break;
-        case rig::LensModel::Brown8:
-            add_residuals<rig::LensModel::Brown8>(bundle, observations, weights, *made);
-            break;
-        case rig::LensModel::Fisheye:
-            add_residuals<rig::LensModel::Fisheye>(bundle, observations, weights, *made);
-            break;
-    }
-    set_known(bundle, choice, made->problem);
-    return made.release();
-}
 
 // What all views share, in SharedLayout's order.
 std::vector<double*> shared_blocks(Bundle& bundle) {
@@ -202,35 +34,87 @@ Eigen::MatrixXd tangents_of(const ceres::Problem& problem, double* block) {
     return jacobian;
 }
 
-Eigen::MatrixXd normal_matrix(const ceres::CRSMatrix& jacobian) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.num_cols, jacobian.num_cols);
-    for (int row = 0; row < jacobian.num_rows; ++row) {
-        const auto begin = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row)]);
-        const auto end = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]);
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t j = begin; j < end; ++j)
-                normal(jacobian.cols[i], jacobian.cols[j]) +=
-                    jacobian.values[i] * jacobian.values[j];
+// The estimated numbers: shared ones first, then each board's.
+struct Columns {
+    int shared = 0;
+    std::vector<int> board_begin;  // and the end of the last
+};
+
+// Rows of one board (or of none): [shared | its pose].
+Eigen::MatrixXd rows_of(const ceres::CRSMatrix& jacobian,
+                        const std::vector<int>& rows,
+                        int shared,
+                        int pose_begin,
+                        int pose_count) {
+    Eigen::MatrixXd dense =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), pose_count + shared);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto row = static_cast<std::size_t>(rows[i]);
+        for (int at = jacobian.rows[row]; at < jacobian.rows[row + 1]; ++at) {
+            const int column = jacobian.cols[static_cast<std::size_t>(at)];
+            const int to = column < shared ? pose_count + column : column - pose_begin;
+            dense(static_cast<Eigen::Index>(i), to) = jacobian.values[static_cast<std::size_t>(at)];
         }
     }
-    return normal;
+    return dense;
 }
 
-// The first `count` rows and columns of the inverse; none where it is singular to rounding.
-std::optional<Eigen::MatrixXd> inverse_corner(const Eigen::MatrixXd& normal, int count) {
-    const Eigen::VectorXd diagonal = normal.diagonal();
-    if (!(diagonal.minCoeff() > 0.0))
+// The triangle R of J = Q R.
+Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& rows) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> factors(rows);
+    const Eigen::Index count = std::min(rows.rows(), rows.cols());
+    return factors.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+}
+
+// What the rows say of the shared numbers once each board's pose is eliminated: orthogonally, so
+// that no digits are lost to squares.
+Eigen::MatrixXd shared_rows(const ceres::CRSMatrix& jacobian, const Columns& columns) {
+    const std::size_t boards = columns.board_begin.size() - 1;
+    std::vector<std::vector<int>> rows(boards + 1);  // the last: of no board
+    for (int row = 0; row < jacobian.num_rows; ++row) {
+        const int last =
+            jacobian
+                .cols[static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]) -
+                      1];
+        const auto end =
+            std::upper_bound(columns.board_begin.begin(), columns.board_begin.end(), last);
+        const auto board = static_cast<std::size_t>(end - columns.board_begin.begin());
+        rows[board == 0 ? boards : board - 1].push_back(row);
+    }
+    Eigen::MatrixXd stacked(0, columns.shared);
+    for (std::size_t board = 0; board <= boards; ++board) {
+        if (rows[board].empty())
+            continue;
+        const int begin = board < boards ? columns.board_begin[board] : columns.shared;
+        const int pose = board < boards ? columns.board_begin[board + 1] - begin : 0;
+        const Eigen::MatrixXd triangle =
+            triangle_of(rows_of(jacobian, rows[board], columns.shared, begin, pose));
+        const Eigen::Index left = std::max<Eigen::Index>(triangle.rows() - pose, 0);
+        Eigen::MatrixXd longer(stacked.rows() + left, columns.shared);
+        longer << stacked, triangle.bottomRightCorner(left, columns.shared);
+        stacked = triangle_of(longer);
+    }
+    return stacked;
+}
+
+// (J^T J)^-1; none where J's columns are dependent to rounding.
+std::optional<Eigen::MatrixXd> inverse_square(const Eigen::MatrixXd& rows) {
+    const Eigen::VectorXd size = rows.colwise().norm();
+    if (rows.rows() < rows.cols() || !(size.minCoeff() > 0.0))
         return std::nullopt;
-    const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::LDLT<Eigen::MatrixXd> factors(scaled);
-    constexpr double kSingular = 1e-15;
-    if (factors.info() != Eigen::Success || !(factors.vectorD().minCoeff() > kSingular))
+    const Eigen::VectorXd scale = size.cwiseInverse();
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rows * scale.asDiagonal());
+    constexpr double kDependent = 1e-12;
+    const Eigen::VectorXd diagonal = factors.matrixQR().diagonal().cwiseAbs();
+    if (!(diagonal.minCoeff() > kDependent * diagonal.maxCoeff()))
         return std::nullopt;
-    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(normal.rows(), count);
-    const Eigen::MatrixXd inverse = factors.solve(unit).topRows(count);
-    const auto shared_scale = scale.head(count).asDiagonal();
-    return Eigen::MatrixXd(shared_scale * inverse * shared_scale);
+    const Eigen::Index count = rows.cols();
+    const Eigen::MatrixXd inverse_triangle =
+        factors.matrixQR().topRows(count).triangularView<Eigen::Upper>().solve(
+            Eigen::MatrixXd::Identity(count, count));
+    const Eigen::MatrixXd root =
+        scale.asDiagonal() * (factors.colsPermutation() * inverse_triangle);
+    return Eigen::MatrixXd(root * root.transpose());
 }
 
 }  // namespace
@@ -239,11 +123,11 @@ int solve(Bundle& bundle,
           const Observations& observations,
           const Weights& weights,
           const Choice& choice) {
-    const std::unique_ptr<BundleProblem> made(problem_of(bundle, observations, weights, choice));
+    const BundleProblem made = make_problem(bundle, observations, weights, choice);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
     options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (double* board : made->boards)
+    for (double* board : made.boards)
         options.linear_solver_ordering->AddElementToGroup(board, 0);
     for (double* block : shared_blocks(bundle))
         options.linear_solver_ordering->AddElementToGroup(block, 1);
@@ -252,9 +136,12 @@ int solve(Bundle& bundle,
     options.function_tolerance = choice.tolerance;
     options.parameter_tolerance = 1e-14;
     options.gradient_tolerance = 1e-16;
+    // Where numbers are nearly interchangeable, as a rational lens' are, no damping at all leaves a
+    // matrix that has no factors.
+    options.max_trust_region_radius = 1e12;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
-    ceres::Solve(options, &made->problem, &summary);
+    ceres::Solve(options, made.problem.get(), &summary);
     return static_cast<int>(summary.iterations.size());
 }
 
@@ -262,25 +149,29 @@ std::optional<SharedCovariance> shared_covariance(Bundle& bundle,
                                                   const Observations& observations,
                                                   const Weights& weights,
                                                   const Choice& choice) {
-    const std::unique_ptr<BundleProblem> made(problem_of(bundle, observations, weights, choice));
+    const BundleProblem made = make_problem(bundle, observations, weights, choice);
     const std::vector<double*> shared = shared_blocks(bundle);
     ceres::Problem::EvaluateOptions options;
     options.apply_loss_function = false;
     std::vector<Eigen::MatrixXd> tangents;
     int estimated = 0, ambient = 0;
     for (double* block : shared) {
-        tangents.push_back(tangents_of(made->problem, block));
+        tangents.push_back(tangents_of(*made.problem, block));
         estimated += static_cast<int>(tangents.back().cols());
         ambient += static_cast<int>(tangents.back().rows());
         if (tangents.back().cols() > 0)
             options.parameter_blocks.push_back(block);
     }
-    options.parameter_blocks.insert(options.parameter_blocks.end(), made->boards.begin(),
-                                    made->boards.end());
+    options.parameter_blocks.insert(options.parameter_blocks.end(), made.boards.begin(),
+                                    made.boards.end());
     ceres::CRSMatrix jacobian;
-    if (!made->problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian))
+    if (!made.problem->Evaluate(options, nullptr, nullptr, nullptr, &jacobian))
         return std::nullopt;
-    const auto inverse = inverse_corner(normal_matrix(jacobian), estimated);
+    Columns columns{estimated, {estimated}};
+    for (const double* board : made.boards)
+        columns.board_begin.push_back(columns.board_begin.back() +
+                                      made.problem->ParameterBlockSize(board));
+    const auto inverse = inverse_square(shared_rows(jacobian, columns));
     if (!inverse)
         return std::nullopt;
     Eigen::MatrixXd expand = Eigen::MatrixXd::Zero(ambient, estimated);

@@ -178,7 +178,8 @@ void fill_parameters(const Fitted& fitted, const Eigen::MatrixXd& shared, Geomet
     const Eigen::Index count = direct + planes.values.size();
     Eigen::MatrixXd by_shared = Eigen::MatrixXd::Zero(count, layout.count);
     by_shared.topLeftCorner(direct, direct).setIdentity();
-    by_shared.bottomRows(planes.values.size()) = planes.by_shared;
+    if (bundle.has_planes)
+        by_shared.bottomRows(planes.values.size()) = planes.by_shared;
     names.insert(names.end(), planes.names.begin(), planes.names.end());
     values.insert(values.end(), planes.values.begin(), planes.values.end());
     const Eigen::MatrixXd covariance = by_shared * shared * by_shared.transpose();

@@ -6,7 +6,7 @@
 /// centers at (0.5, 0.5).
 #pragma once
 
-#include "calibrate/plan_types.h"
+#include "formats/capture/plan.h"
 
 #include <glm/glm.hpp>
 

@@ -55,6 +55,7 @@ Vector3<Number> center_slab(const Bundle& bundle,
 struct StepError {
     glm::dvec2 mean_m{0.0};
     glm::dmat2 covariance_m2{0.0};
+    double grid_share = 1;  // of the grid's error that stays in the position
 };
 
 StepError step_error(const Fitted& fitted, const FilterView* filter) {
@@ -70,6 +71,7 @@ StepError step_error(const Fitted& fitted, const FilterView* filter) {
         prior_m2 * glm::inverse(seen_covariance_m2(fitted.bundle, *filter) + glm::dmat2(prior_m2));
     error.mean_m = gain * (m_by_px * *residual_px);
     error.covariance_m2 = prior_m2 * (glm::dmat2(1.0) - gain);
+    error.grid_share = 1.0 - 0.5 * (gain[0][0] + gain[1][1]);
     return error;
 }
 
@@ -81,13 +83,15 @@ const FilterView* view_of(const Observations& observations, glm::ivec2 position)
     return nullptr;
 }
 
-// RMS of a position's sigmas along x and y.
+// RMS of a position's sigmas along x and y. Where the picture decides, the grid's error does not
+// count.
 double position_sigma_m(const Vector3<Number>& position,
                         const Eigen::Matrix<double, kSlabNumbers, kSlabNumbers>& covariance,
                         const StepError& step) {
     double variance = 0.5 * (step.covariance_m2[0][0] + step.covariance_m2[1][1]);
     for (int axis = 0; axis < 2; ++axis)
-        variance += 0.5 * position[axis].v.dot(covariance * position[axis].v);
+        variance += 0.5 * step.grid_share * step.grid_share *
+                    position[axis].v.dot(covariance * position[axis].v);
     return std::sqrt(std::max(variance, 0.0));
 }
 

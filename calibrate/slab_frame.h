@@ -4,6 +4,8 @@
 
 #include "calibrate/bundle_residuals.h"
 
+#include <Eigen/Geometry>
+
 namespace nearfield::calibrate {
 
 /// What the slab follows from: moves of S and U and the grid, in this order.
