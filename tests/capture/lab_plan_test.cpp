@@ -204,9 +204,9 @@ TEST(Board, IsSaidInShortAsInFull) {
     EXPECT_EQ(chessboard.squares, glm::ivec2(10, 7));
     EXPECT_EQ(chessboard.square_m, 0.025);
     for (const char* wrong :
-         {"", "chessboard", "chessboard:10x7", "chessboard:10:0.025", "chessboard:10x7:25mm",
+         {"", "chessboard", "chessboard:10x7", "chessboard:10:0.025", "chessboard:10x7:0.025m",
           "chessboard:10x7:0.025:0.01:4x4_50", "charuco:8x6:0.03", "charuco:8x6:0.03:0.0225:5x5",
-          "charuco:8x6:0.03:0.04:4x4_50", "chessboard:1e1x7:0.025", "chessboard:2x7:0.025"})
+          "charuco:8x6:0.03:0.04:4x4_50", "chessboard:4e1x7:0.025", "chessboard:2x7:0.025"})
         EXPECT_THROW(board_from_text(wrong, "--board"), Error) << wrong;
 }
 
