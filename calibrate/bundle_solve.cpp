@@ -136,6 +136,9 @@ int solve(Bundle& bundle,
     options.function_tolerance = choice.tolerance;
     options.parameter_tolerance = 1e-14;
     options.gradient_tolerance = 1e-16;
+    // Where numbers are nearly interchangeable, as a rational lens' are, no damping at all leaves a
+    // matrix that has no factors.
+    options.max_trust_region_radius = 1e12;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, made.problem.get(), &summary);

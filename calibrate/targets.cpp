@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace nearfield::calibrate {
@@ -52,7 +53,10 @@ Corner corner_from_opencv(const capture::BoardPlan& board, int id, cv::Point2f a
     return {id, corner_board_m(board, id), glm::dvec2(at.x, at.y) + 0.5};
 }
 
-const cv::TermCriteria kRefined(cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER, 60, 1e-4);
+void refine(const cv::Mat& gray, std::vector<cv::Point2f>& corners, int half_window_px) {
+    const cv::TermCriteria done(cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER, 60, 1e-4);
+    cv::cornerSubPix(gray, corners, {half_window_px, half_window_px}, {-1, -1}, done);
+}
 
 std::vector<Corner> find_chessboard(const GrayPicture& picture, const capture::BoardPlan& board) {
     const cv::Size inner(board.squares.x - 1, board.squares.y - 1);
@@ -61,11 +65,51 @@ std::vector<Corner> find_chessboard(const GrayPicture& picture, const capture::B
                                    cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
         return {};
     constexpr int kHalfWindow_px = 5;
-    cv::cornerSubPix(picture.values, found, {kHalfWindow_px, kHalfWindow_px}, {-1, -1}, kRefined);
+    refine(picture.values, found, kHalfWindow_px);
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < found.size(); ++i)
         corners.push_back(corner_from_opencv(board, static_cast<int>(i), found[i]));
     return corners;
+}
+
+struct Markers {
+    std::vector<std::vector<cv::Point2f>> corners;
+    std::vector<int> ids;
+};
+
+// Small pictures are enlarged first: bits of a marker need some pixels each.
+Markers find_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
+    constexpr double kGoodWidth_px = 1500.0;
+    const int factor = std::clamp(static_cast<int>(kGoodWidth_px / picture.cols + 0.5), 1, 3);
+    cv::Mat larger = picture;
+    if (factor > 1)
+        cv::resize(picture, larger, {}, factor, factor, cv::INTER_CUBIC);
+    Markers markers;
+    cv::aruco::detectMarkers(larger, dictionary, markers.corners, markers.ids);
+    const cv::Point2f half_px(0.5F, 0.5F);
+    for (std::vector<cv::Point2f>& marker : markers.corners) {
+        for (cv::Point2f& corner : marker)
+            corner = (corner + half_px) / static_cast<float>(factor) - half_px;
+    }
+    return markers;
+}
+
+// Pixels between a corner and the markers beside it, which its window must not reach: least over
+// the corners, by the distance of neighbors.
+double clear_of_markers_px(const capture::BoardPlan& board,
+                           const std::vector<int>& ids,
+                           const std::vector<cv::Point2f>& corners) {
+    double square_px = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const glm::dvec2 apart =
+                (corner_board_m(board, ids[i]) - corner_board_m(board, ids[j])) / board.square_m;
+            const double squares = glm::length(apart);
+            if (squares < 1.5)
+                square_px = std::min(square_px, cv::norm(corners[i] - corners[j]) / squares);
+        }
+    }
+    return square_px * 0.5 * (1.0 - board.marker_m / board.square_m);
 }
 
 std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::BoardPlan& board) {
@@ -73,21 +117,32 @@ std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::Boar
     const auto layout = cv::aruco::CharucoBoard::create(
         board.squares.x, board.squares.y, static_cast<float>(board.square_m),
         static_cast<float>(board.marker_m), dictionary);
-    std::vector<std::vector<cv::Point2f>> markers;
-    std::vector<int> marker_ids;
-    cv::aruco::detectMarkers(picture.stretched, dictionary, markers, marker_ids);
-    if (markers.empty())
+    const Markers markers = find_markers(picture.stretched, dictionary);
+    if (markers.ids.empty())
         return {};
     std::vector<cv::Point2f> found;
     std::vector<int> ids;
-    cv::aruco::interpolateCornersCharuco(markers, marker_ids, picture.stretched, layout, found,
-                                         ids);
+    constexpr int kLeastMarkers = 1;  // beside a corner
+    cv::aruco::interpolateCornersCharuco(markers.corners, markers.ids, picture.stretched, layout,
+                                         found, ids, cv::noArray(), cv::noArray(), kLeastMarkers);
+    if (found.empty())
+        return {};
+    // This function of 4.6 adds the half pixel itself, and stops refining within 0.1 px.
+    for (cv::Point2f& corner : found)
+        corner -= cv::Point2f(0.5F, 0.5F);
+    // A corner beside one marker alone may be two pixels off: a larger window first. Windows and
+    // blur as measured on boards whose corners are known (docs/calibration.md).
+    constexpr int kLeastHalf_px = 2, kMostHalf_px = 7;
+    constexpr double kBlur_px = 0.7;
+    cv::Mat smooth;
+    cv::GaussianBlur(picture.values, smooth, {0, 0}, kBlur_px);
+    const double clear_px = std::clamp(clear_of_markers_px(board, ids, found),
+                                       double(kLeastHalf_px), double(kMostHalf_px));
+    refine(smooth, found, static_cast<int>(clear_px) + 1);
+    refine(smooth, found, static_cast<int>(clear_px));
     std::vector<Corner> corners;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        // This function of 4.6 adds the half pixel itself (seen on boards whose corners are known).
-        const cv::Point2f half_px(0.5F, 0.5F);
-        corners.push_back(corner_from_opencv(board, ids[i], found[i] - half_px));
-    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        corners.push_back(corner_from_opencv(board, ids[i], found[i]));
     std::sort(corners.begin(), corners.end(),
               [](const Corner& a, const Corner& b) { return a.id < b.id; });
     return corners;

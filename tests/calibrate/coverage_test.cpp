@@ -30,10 +30,11 @@ TEST(Coverage, OneSigmaHoldsTwoThirdsOfCalibrations) {
     double time_s = 0.0;
     const std::vector<std::string>& names = found[0].covariance_of;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const double value = test::true_parameter(truth, names[i]);
         std::size_t within = 0;
         double square_sum = 0.0;
         for (const Geometry& geometry : found) {
+            const double value =
+                test::true_parameter(truth, names[i], geometry.planes->planes.camera_from_slab);
             const double off =
                 (geometry.parameters[i].value - value) / geometry.parameters[i].sigma;
             within += std::abs(off) < 1.0;

@@ -3,7 +3,7 @@
 #include "calibrate/targets.h"
 
 #include "formats/files/error.h"
-#include "sample_data/bench/places.h"
+#include "tests/calibrate/bench_views.h"
 #include "tests/calibrate/simulated.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ namespace nearfield::calibrate {
 namespace {
 
 using sample_data::Bench;
-using sample_data::operator*;
+using test::board_of;
+using test::target_bench;
 
 // What was found against the truth.
 struct CornerErrors {
@@ -41,44 +42,16 @@ std::ostream& operator<<(std::ostream& out, const CornerErrors& errors) {
                << " px, mean " << errors.mean_px().x << " " << errors.mean_px().y << " px";
 }
 
-// The bench of a file, its targets alone.
-Bench target_bench(const std::string& name) {
-    Bench bench =
-        sample_data::read_bench(std::string(NEARFIELD_SOURCE_DIR) + "/sample_data/" + name);
-    bench.setup = sample_data::Setup::Direct;
-    bench.filter.grid = {1, 1};
-    return bench;
-}
-
-capture::BoardPlan board_of(const Bench& bench) {
-    const sample_data::BenchBoard& board = bench.targets.board;
-    return {capture::BoardKind::Charuco, board.squares, board.square_m, board.marker_m, "4x4_50"};
-}
-
-capture::Frame exposed(const sample_data::PreparedBench& prepared, int view) {
-    const Bench& bench = sample_data::bench_of(prepared);
-    sample_data::Shot shot;
-    shot.subject = sample_data::Subject::Target;
-    shot.target_view = view;
-    shot.frame_number = static_cast<std::uint64_t>(view);
-    const std::vector<float> signal = sample_data::signal_e_per_s(prepared, shot);
-    const double brightest = *std::max_element(signal.begin(), signal.end());
-    shot.exposure_us = 0.7e6 * bench.camera.full_well_e / brightest;
-    return {bench.camera.size_px, 1, bench.camera.bits, sample_data::expose(prepared, shot)};
-}
-
 CornerErrors errors_on(const std::string& name, const std::string& mosaic) {
     const Bench bench = target_bench(name);
     const sample_data::Prepared prepared = sample_data::prepare(bench);
     const sample_data::Places places = sample_data::make_places(bench);
     const capture::BoardPlan board = board_of(bench);
-    const Rigid camera_from_bench = sample_data::inverse(bench.camera.bench_from_camera);
     CornerErrors errors;
     for (std::size_t view = 0; view < bench.targets.views.size(); ++view) {
-        const Rigid camera_from_board = camera_from_bench * places.bench_from_board[view];
         const auto true_px = [&](glm::dvec2 board_m) {
-            return *sample_data::project_px(
-                bench.camera, sample_data::apply(camera_from_board, glm::dvec3(board_m, 0.0)));
+            return test::seen_px(
+                bench, sample_data::apply(places.bench_from_board[view], glm::dvec3(board_m, 0.0)));
         };
         const glm::ivec2 inner = board.squares - 1;
         for (int id = 0; id < inner.x * inner.y; ++id) {
@@ -87,7 +60,7 @@ CornerErrors errors_on(const std::string& name, const std::string& mosaic) {
             errors.visible += at.x > 8 && at.y > 8 && at.x < size.x - 8 && at.y < size.y - 8;
         }
         const std::vector<Corner> corners =
-            find_board(exposed(*prepared, static_cast<int>(view)), mosaic, board);
+            find_board(test::exposed(*prepared, view), mosaic, board);
         errors.views += !corners.empty();
         for (const Corner& corner : corners)
             errors.add(corner.at_px - true_px(corner.board_m));
@@ -112,14 +85,20 @@ TEST(Targets, CornersOfTheFarBenchAreFoundThroughItsMosaic) {
     EXPECT_LT(glm::length(errors.mean_px()), 0.02);
 }
 
-// A chessboard by 8 x 8 points a pixel, through a pose and a lens; its corners are known.
+// A chessboard by 8 x 8 points a pixel, through a pose and a pinhole; its corners are known.
 struct DrawnBoard {
     capture::BoardPlan board{capture::BoardKind::Chessboard, {10, 7}, 0.025, 0.0, {}};
-    rig::Lens lens = test::simulated_lens(rig::LensModel::Brown5);
+    double focal_px = 800.0;
+    glm::dvec2 center_px{258.3, 254.1};
     Rigid camera_from_board{test::turn_xyz({0.3, -0.4, 0.2}), {-0.12, -0.06, 0.55}};
 
+    glm::dvec2 corner_px(int id) const {
+        const glm::dvec3 p =
+            sample_data::apply(camera_from_board, glm::dvec3(corner_board_m(board, id), 0.0));
+        return focal_px * glm::dvec2(p) / p.z + center_px;
+    }
     double brightness(glm::dvec2 at_px) const {
-        const glm::dvec3 ray = *rig::ray_camera(lens, at_px);
+        const glm::dvec3 ray((at_px - center_px) / focal_px, 1.0);
         const glm::dmat3 to = glm::transpose(camera_from_board.rotation);
         const glm::dvec3 eye = to * -camera_from_board.translation_m, along = to * ray;
         const glm::dvec2 at = glm::dvec2(eye - along * (eye.z / along.z)) / board.square_m;
@@ -128,7 +107,7 @@ struct DrawnBoard {
         return (static_cast<int>(at.x) + static_cast<int>(at.y)) % 2 == 0 ? 0.1 : 0.9;
     }
     capture::Frame picture() const {
-        capture::Frame frame{lens.size_px, 1, 8, {}};
+        capture::Frame frame{{512, 512}, 1, 8, {}};
         for (int y = 0; y < frame.size_px.y; ++y) {
             for (int x = 0; x < frame.size_px.x; ++x) {
                 double sum = 0.0;
@@ -150,14 +129,9 @@ TEST(Targets, AChessboardsCornersAreFound) {
     errors.views = 1;
     errors.visible = 54;
     // The board may be found turned by half a turn: it looks the same, ids start at the other end.
-    const auto true_px = [&](int id) {
-        const glm::dvec3 on_board(corner_board_m(drawn.board, id), 0.0);
-        return *rig::project_px(drawn.lens, drawn.camera_from_board.rotation * on_board +
-                                                drawn.camera_from_board.translation_m);
-    };
-    const bool is_turned = glm::length(corners[0].at_px - true_px(0)) > 10.0;
+    const bool is_turned = glm::length(corners[0].at_px - drawn.corner_px(0)) > 10.0;
     for (const Corner& corner : corners)
-        errors.add(corner.at_px - true_px(is_turned ? 53 - corner.id : corner.id));
+        errors.add(corner.at_px - drawn.corner_px(is_turned ? 53 - corner.id : corner.id));
     std::cout << "chessboard: " << errors << "\n";
     EXPECT_LT(errors.rms_px(), 0.05);
     EXPECT_LT(glm::length(errors.mean_px()), 0.01);

@@ -35,15 +35,34 @@ inline double true_parameter(const SimulatedBench& bench, const std::string& nam
         {"slab_x_m", origin.x},
         {"slab_y_m", origin.y},
         {"slab_z_m", origin.z},
-        {"slab_turn_x_rad", 0.0},
-        {"slab_turn_y_rad", 0.0},
-        {"slab_turn_z_rad", 0.0},
     };
     for (const auto& [key, value] : values) {
         if (key == name)
             return value;
     }
     throw std::runtime_error("no truth for " + name);
+}
+
+/// The small turn (rad, about the slab's axes) from what was found to the truth.
+inline glm::dvec3 slab_turn_rad(const SimulatedBench& bench, const Rigid& camera_from_slab) {
+    const glm::dmat3 turn =
+        glm::transpose(camera_from_slab.rotation) * bench.camera_from_slab.rotation;
+    return 0.5 * glm::dvec3(turn[1].z - turn[2].y, turn[2].x - turn[0].z, turn[0].y - turn[1].x);
+}
+
+/// The same for a geometry's parameter, whose turns are 0 where it is: slab_turn_x_rad is what the
+/// truth is away from it.
+inline double true_parameter(const SimulatedBench& bench,
+                             const std::string& name,
+                             const Rigid& camera_from_slab) {
+    const glm::dvec3 turn = slab_turn_rad(bench, camera_from_slab);
+    if (name == "slab_turn_x_rad")
+        return turn.x;
+    if (name == "slab_turn_y_rad")
+        return turn.y;
+    if (name == "slab_turn_z_rad")
+        return turn.z;
+    return true_parameter(bench, name);
 }
 
 }  // namespace nearfield::test
