@@ -130,8 +130,7 @@ std::optional<ExposureRatio> combine(const PairKey& key,
     for (const float weight : sums.weight)
         squares += static_cast<double>(weight) * weight;
     const double by_black = 1.0 - result.ratio;
-    const double by_rate =
-        (key.second - result.ratio * key.first) * kRatioSecondsPerMicrosecond;
+    const double by_rate = (key.second - result.ratio * key.first) * kRatioSecondsPerMicrosecond;
     const double dark_dn2 = std::pow(by_black * dark.black_sigma_dn, 2.0) +
                             2.0 * by_black * by_rate * dark.covariance +
                             std::pow(by_rate * dark.rate_sigma_dn_per_s, 2.0);
@@ -158,7 +157,8 @@ void chain(const std::vector<double>& asked_us, double unknown_sigma_rel, RatioR
             sigma_rel = one.sigma_rel;
         }
         const rig::TrueExposure& known = result.exposures[from];
-        result.exposures[to] = {asked_us[to], to > from ? known.true_us * ratio : known.true_us / ratio,
+        result.exposures[to] = {asked_us[to],
+                                to > from ? known.true_us * ratio : known.true_us / ratio,
                                 std::hypot(known.sigma_rel, sigma_rel)};
     };
     for (std::size_t k = reference; k + 1 < asked_us.size(); ++k)

@@ -48,10 +48,12 @@ void fill_row(const FilterSample& sample,
         return blurred_value(parameters.cells, x, spread);
     };
     const double px = phi(at.x.x, at.spread.x), py = phi(at.x.y, at.spread.y);
-    const double dx = (phi(at.x.x + kSlopeStep, at.spread.x) -
-                       phi(at.x.x - kSlopeStep, at.spread.x)) / (2.0 * kSlopeStep);
-    const double dy = (phi(at.x.y + kSlopeStep, at.spread.y) -
-                       phi(at.x.y - kSlopeStep, at.spread.y)) / (2.0 * kSlopeStep);
+    const double dx =
+        (phi(at.x.x + kSlopeStep, at.spread.x) - phi(at.x.x - kSlopeStep, at.spread.x)) /
+        (2.0 * kSlopeStep);
+    const double dy =
+        (phi(at.x.y + kSlopeStep, at.spread.y) - phi(at.x.y - kSlopeStep, at.spread.y)) /
+        (2.0 * kSlopeStep);
     const double peak = parameters.peak[static_cast<std::size_t>(sample.color)];
     row.value = peak * px * py;
     // x = R^T (u - c), c in pitches of the filter's own axes before they are turned.
@@ -147,6 +149,18 @@ Condition peak_condition(const FilterParameters& parameters) {
     } else {  // the mean of what the two middle cells say
         condition.row[parameters.cell_index(cells / 2)] = 0.5;
         condition.row[parameters.cell_index(cells / 2 - 1)] = 0.5;
+    }
+    return condition;
+}
+
+Condition center_condition(const FilterParameters& parameters) {
+    Condition condition{Eigen::VectorXd::Zero(parameters.count()), 0.0};
+    const std::size_t cells = parameters.cells.size();
+    for (std::size_t c = 0; c < cells; ++c) {
+        const double a = lower_edge(c, cells), b = a + 1.0;
+        for (int power = 0; power < 3; ++power)
+            condition.row[parameters.cell_index(c) + power] =
+                (std::pow(b, power + 2) - std::pow(a, power + 2)) / (power + 2);
     }
     return condition;
 }

@@ -44,6 +44,9 @@ struct Condition {
 
 /// phi(0) = 1: what tells peak and profile apart.
 Condition peak_condition(const FilterParameters& parameters);
+/// The integral of x phi(x) is 0: where the center is. Without it a shift of all centers looks like
+/// another profile, since a spline's slope is a sum of the same pieces.
+Condition center_condition(const FilterParameters& parameters);
 /// What phi jumps by at knot 0 ... n (outside it is zero).
 Eigen::VectorXd jump_row(const FilterParameters& parameters, std::size_t knot);
 

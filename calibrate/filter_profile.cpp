@@ -83,8 +83,8 @@ FilterFit minimize(const std::vector<FilterSample>& samples,
     const auto count = static_cast<Eigen::Index>(fit.parameters.count());
     const double freedom = static_cast<double>(samples.size()) - static_cast<double>(count);
     fit.inflation = std::max(1.0, fit.normal.chi2 / std::max(1.0, freedom));
-    fit.covariance = fit.inflation *
-                     fit.normal.matrix.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    fit.covariance =
+        fit.inflation * fit.normal.matrix.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
     return fit;
 }
 
@@ -110,19 +110,23 @@ FilterCenter center_of(const FilterFit& fit,
     center.position = position;
     center.center_u_m = fit.parameters.center[view] * geometry.pitch_m;
     const auto seen_px = [&](glm::dvec2 u_m) {
-        const auto at = rig::project_px(geometry.lens,
-                                        geometry.camera_from_u.rotation * glm::dvec3(u_m, 0.0) +
-                                            geometry.camera_from_u.translation_m);
+        const auto at =
+            rig::project_px(geometry.lens, geometry.camera_from_u.rotation * glm::dvec3(u_m, 0.0) +
+                                               geometry.camera_from_u.translation_m);
         if (!at)
             throw Error{"the filter is behind the camera", "filter views", "planes before it", ""};
         return *at;
     };
     center.center_px = seen_px(center.center_u_m);
     const double step = 1e-4;  // of a pitch
-    const glm::dvec2 by_x = (seen_px((fit.parameters.center[view] + glm::dvec2(step, 0.0)) *
-                                     geometry.pitch_m) - center.center_px) / step;
-    const glm::dvec2 by_y = (seen_px((fit.parameters.center[view] + glm::dvec2(0.0, step)) *
-                                     geometry.pitch_m) - center.center_px) / step;
+    const glm::dvec2 by_x =
+        (seen_px((fit.parameters.center[view] + glm::dvec2(step, 0.0)) * geometry.pitch_m) -
+         center.center_px) /
+        step;
+    const glm::dvec2 by_y =
+        (seen_px((fit.parameters.center[view] + glm::dvec2(0.0, step)) * geometry.pitch_m) -
+         center.center_px) /
+        step;
     const glm::dmat2 px_from_pitches(by_x, by_y);
     const int at = 2 * static_cast<int>(view);
     const glm::dmat2 covariance(fit.covariance(at, at), fit.covariance(at, at + 1),
@@ -138,6 +142,7 @@ std::vector<ProfilePoint> points_along(const std::vector<FilterSample>& samples,
                                        const FilterFit& fit,
                                        glm::dvec2 pitch_m,
                                        int axis) {
+    constexpr double kLeastThrough = 0.2;  // of what the other axis lets through at its best
     const auto cells = static_cast<double>(fit.parameters.cells.size());
     struct Bin {
         double weight = 0, value = 0, fitted = 0, x = 0;
@@ -148,9 +153,11 @@ std::vector<ProfilePoint> points_along(const std::vector<FilterSample>& samples,
         const double place = (at.x[axis] / cells + 0.5) * kProfileBins;
         if (!(place >= 0.0 && place < kProfileBins))
             continue;
-        const double other = fit.parameters.peak[static_cast<std::size_t>(sample.color)] *
-                             blurred_value(fit.parameters.cells, at.x[1 - axis],
-                                           at.spread[1 - axis]);
+        const double other =
+            fit.parameters.peak[static_cast<std::size_t>(sample.color)] *
+            blurred_value(fit.parameters.cells, at.x[1 - axis], at.spread[1 - axis]);
+        if (other < kLeastThrough * fit.parameters.peak[static_cast<std::size_t>(sample.color)])
+            continue;
         const double own = blurred_value(fit.parameters.cells, at.x[axis], at.spread[axis]);
         const double inverse = 1.0 / (static_cast<double>(sample.sigma) * sample.sigma);
         Bin& bin = bins[static_cast<std::size_t>(place)];
@@ -210,7 +217,7 @@ FilterFit fit_profile(const FilterSamples& found,
                       int colors,
                       int& jumps) {
     const FilterParameters start = first_guess(found, geometry, nominal, colors);
-    std::vector<Condition> conditions{peak_condition(start)};
+    std::vector<Condition> conditions{peak_condition(start), center_condition(start)};
     FilterFit fit = minimize(found.samples, start, geometry.pitch_m, conditions);
     for (std::size_t knot = 0; knot <= nominal.cells.size(); ++knot) {
         const Eigen::VectorXd row = jump_row(fit.parameters, knot);

@@ -37,7 +37,7 @@ struct ProfilePoint {
 };
 
 struct FilterProfileResult {
-    Profile profile;  // "measured", peak 1 at its center
+    Profile profile;                       // "measured", peak 1 at its center
     std::vector<double> peak, peak_sigma;  // transmission at the center, [color]
     std::vector<FilterCenter> centers;
     double turn_rad = 0, turn_sigma_rad = 0;  // the filter's x axis against U's
@@ -45,26 +45,27 @@ struct FilterProfileResult {
     std::size_t pixels = 0;
     int parameters = 0;
     std::vector<ProfilePoint> along_x, along_y;
-    double nominal_deviation = 0;        // largest, of the peak; against the nominal basis
-    double nominal_sigmas = 0;           // the same in sigmas
+    double nominal_deviation = 0;                // largest, of the peak; against the nominal basis
+    double nominal_sigmas = 0;                   // the same in sigmas
     double asymmetry = 0, asymmetry_sigmas = 0;  // of x against y, RMS of their difference
-    int jumps = 0;                       // knots where the profile is not continuous
+    int jumps = 0;                               // knots where the profile is not continuous
 };
 
 /// What is known before.
 struct FilterGeometry {
     rig::Lens lens;
-    Rigid camera_from_u;      // of a frame in the filter's plane
-    glm::dvec2 pitch_m{0};    // the profile's unit of length along the filter's axes
+    Rigid camera_from_u;        // of a frame in the filter's plane
+    glm::dvec2 pitch_m{0};      // the profile's unit of length along the filter's axes
     double turn_guess_rad = 0;  // to 20 degrees or so
     double psf_sigma_px = 0.7;  // of the lens; the pixel's own square comes besides
 };
 
 /// Fits  T(u) = peak phi(x) phi(y),  x and y in pitches along the filter's axes from its center,
-/// phi quadratic on each of `nominal`'s cells: peak, phi, turn and every view's center at once, by
-/// Gauss and Newton's iteration. A pixel sees phi blurred by its square and the lens' core, and so
-/// is the model: moments of truncated gaussians, so edges and knots are no special case. Where
-/// neighboring cells meet within 3 sigma or half a percent, they are made to meet.
+/// phi quadratic on each of `nominal`'s cells, its centroid at 0: peak, phi, turn and every view's
+/// center at once, by Gauss and Newton's iteration. A pixel sees phi blurred by its square and the
+/// lens' core, and so is the model: moments of truncated gaussians, so edges and knots are no
+/// special case. Where neighboring cells meet within 3 sigma or half a percent, they are made to
+/// meet.
 ///
 /// In      color_of: of a value, 0 ... colors - 1
 /// Throws  Error where a view shows no filter (its light is nowhere above 5 sigma), where it is cut

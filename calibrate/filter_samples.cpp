@@ -103,8 +103,8 @@ FilterSamples filter_samples_of(std::span<const FilterPicture> pictures,
             const glm::dvec2 pitches = glm::abs(x / geometry.pitch_m);
             if (std::max(pitches.x, pitches.y) > reach_pitches)
                 continue;
-            const bool is_at_border = at_px.x < 1.0 || at_px.y < 1.0 ||
-                                      at_px.x > size_px.x - 1.0 || at_px.y > size_px.y - 1.0;
+            const bool is_at_border = at_px.x < 1.0 || at_px.y < 1.0 || at_px.x > size_px.x - 1.0 ||
+                                      at_px.y > size_px.y - 1.0;
             if (is_at_border && picture.transmission[k] > kSeenSigmas * picture.sigma[k] &&
                 std::max(pitches.x, pitches.y) < reach_pitches - 0.5)
                 throw Error{"the filter is cut off", view_name(picture),

@@ -79,11 +79,8 @@ void add_flat(const FrameStack& stack,
 }
 
 // Median of the eight nearest values of the same color.
-float neighbors_median(const std::vector<float>& values,
-                       const PixelLayout& layout,
-                       int x,
-                       int y,
-                       int channel) {
+float neighbors_median(
+    const std::vector<float>& values, const PixelLayout& layout, int x, int y, int channel) {
     const int step = layout.mosaic == "mono" || layout.mosaic == "rgb" ? 1 : 2;
     std::vector<float> near;
     near.reserve(8);
@@ -145,8 +142,8 @@ void normalize(const FlatSums& sums,
     for (std::size_t k = 0; k < rates.size(); ++k) {
         const double mean = flat.rate_dn_per_s[static_cast<std::size_t>(layout.color(k))];
         flat.response[k] = static_cast<float>(rates[k] / mean);
-        flat.response_sigma_rel[k] = static_cast<float>(std::sqrt(sums.variance_dn2[k]) /
-                                                        std::max(sums.net_dn[k], 1e-9));
+        flat.response_sigma_rel[k] =
+            static_cast<float>(std::sqrt(sums.variance_dn2[k]) / std::max(sums.net_dn[k], 1e-9));
     }
 }
 

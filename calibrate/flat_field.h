@@ -15,7 +15,7 @@ struct LinearityPoint {
     double signal_dn = 0;  // above dark, mean over the picture
     double rate_dn_per_s = 0;
     double deviation_rel = 0, sigma_rel = 0;  // of the rate from the mean rate; of counts and darks
-    bool is_used = false;  // neither saturated nor dark
+    bool is_used = false;                     // neither saturated nor dark
 };
 
 /// Response of every pixel with the lens before it, to an even source.

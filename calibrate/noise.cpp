@@ -12,9 +12,9 @@ namespace nearfield::calibrate {
 namespace {
 
 constexpr int kTransferBins = 64;
-constexpr std::size_t kLeastPairs = 30;   // a variance known to 26 %
-constexpr double kCollapsed = 0.7;        // of what the line says
-constexpr double kShareOfClip = 0.85;     // of the clipping level: nothing clips below it
+constexpr std::size_t kLeastPairs = 30;  // a variance known to 26 %
+constexpr double kCollapsed = 0.7;       // of what the line says
+constexpr double kShareOfClip = 0.85;    // of the clipping level: nothing clips below it
 constexpr int kReweightings = 5;
 
 struct VarianceLine {
@@ -32,8 +32,8 @@ VarianceLine fit_line(const std::vector<TransferPoint>& points) {
         for (const TransferPoint& point : points) {
             if (!point.is_used)
                 continue;
-            const double expected = round == 0 ? point.variance_dn2
-                                               : line.read_dn2 + line.slope_dn * point.signal_dn;
+            const double expected =
+                round == 0 ? point.variance_dn2 : line.read_dn2 + line.slope_dn * point.signal_dn;
             const double sigma =
                 std::max(expected, 1e-6) * std::sqrt(2.0 / static_cast<double>(point.pairs));
             const double weight = 1.0 / (sigma * sigma);
@@ -212,8 +212,7 @@ Saturation saturation_of(const LevelHistogram& histogram,
     }
     const double signal_dn = std::max(0.0, found.clip_dn - black_dn);
     found.saturation_dn =
-        found.clip_dn -
-        3.0 * std::sqrt(read_noise_dn * read_noise_dn + signal_dn / gain_e_per_dn);
+        found.clip_dn - 3.0 * std::sqrt(read_noise_dn * read_noise_dn + signal_dn / gain_e_per_dn);
     return found;
 }
 

@@ -51,8 +51,7 @@ PixelLayout layout_of(const capture::FrameRecord& frame) {
         throw Error{"unknown colors", frame.file + ": pixel_format",
                     "BayerRG, BayerGR, BayerGB or BayerBG", frame.pixel_format};
     for (std::size_t site = 0; site < 4; ++site)
-        layout.color_of_site[site] =
-            static_cast<int>(std::string("rgb").find(layout.mosaic[site]));
+        layout.color_of_site[site] = static_cast<int>(std::string("rgb").find(layout.mosaic[site]));
     return layout;
 }
 

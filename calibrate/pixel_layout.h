@@ -16,7 +16,7 @@ struct PixelLayout {
     glm::ivec2 size_px{0};
     int channels = 1;
     int bits = 16;
-    std::string mosaic = "mono";                // as rig::Radiometry::mosaic
+    std::string mosaic = "mono";                   // as rig::Radiometry::mosaic
     std::array<int, 4> color_of_site{0, 0, 0, 0};  // [y % 2][x % 2] of a mosaic
 
     std::size_t value_count() const;

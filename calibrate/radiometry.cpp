@@ -107,8 +107,8 @@ void find_noise(const SortedFrames& frames, const FrameReader& read, RadiometryR
     radiometry.gain_e_per_dn = result.noise->gain_e_per_dn;
     radiometry.gain_sigma = result.noise->gain_sigma;
     radiometry.read_noise_dn = result.noise->read_noise_dn;
-    result.saturation = saturation_of(histogram, result.layout, black_dn,
-                                      radiometry.gain_e_per_dn, radiometry.read_noise_dn);
+    result.saturation = saturation_of(histogram, result.layout, black_dn, radiometry.gain_e_per_dn,
+                                      radiometry.read_noise_dn);
     radiometry.saturation_dn = result.saturation.saturation_dn;
 }
 
@@ -117,8 +117,8 @@ void find_response(const SortedFrames& frames,
                    const RadiometryOptions& options,
                    RadiometryResult& result) {
     rig::Radiometry& radiometry = result.radiometry;
-    result.flat = flat_field_of(frames.flats, result.layout, result.dark, radiometry, read,
-                                options.dead_rel);
+    result.flat =
+        flat_field_of(frames.flats, result.layout, result.dark, radiometry, read, options.dead_rel);
     result.maps.response = result.flat->response;
     result.maps.response_sigma_rel = result.flat->response_sigma_rel;
     double variance = 0;
@@ -161,8 +161,8 @@ void recover(const SortedFrames& frames, const FrameReader& read, RadiometryResu
         const int shift = std::max(0, frame.bits - 8);
         for (const std::uint16_t value : frame.values)
             photograph.values.push_back(static_cast<std::uint8_t>(value >> shift));
-        photograph.exposure_s = (record->exposure_us > 0.0 ? record->exposure_us
-                                                           : record->shot.exposure_us) * 1e-6;
+        photograph.exposure_s =
+            (record->exposure_us > 0.0 ? record->exposure_us : record->shot.exposure_us) * 1e-6;
         photographs.push_back(std::move(photograph));
     }
     result.response = recover_response(photographs, result.layout.channels, {});
@@ -203,8 +203,7 @@ SortedFrames sorted_frames(const capture::Capture& capture) {
     for (const auto& [number, record] : capture.frames) {
         const capture::Shot& shot = record.shot;
         if (shot.kind == ShotKind::Dark || shot.kind == ShotKind::Flat) {
-            ExposureGroup& group =
-                (shot.kind == ShotKind::Dark ? darks : flats)[shot.exposure_us];
+            ExposureGroup& group = (shot.kind == ShotKind::Dark ? darks : flats)[shot.exposure_us];
             group.exposure_us = shot.exposure_us;
             group.frames.push_back(&record);
         } else if (shot.kind == ShotKind::Filter) {
@@ -265,9 +264,9 @@ RadiometryResult calibrate_sensor(const capture::Capture& capture,
     report(progress, "response of pixels", 0.6);
     find_response(frames, read, options, result);
     report(progress, "true exposures", 0.7);
-    result.ratios = exposure_ratios_of(frames.brackets, result.layout, result.dark,
-                                       result.radiometry, result.maps, read,
-                                       options.unknown_ratio_rel);
+    result.ratios =
+        exposure_ratios_of(frames.brackets, result.layout, result.dark, result.radiometry,
+                           result.maps, read, options.unknown_ratio_rel);
     result.radiometry.exposures = result.ratios.exposures;
     flag_sensor(frames, result);
     list_sensor(result);

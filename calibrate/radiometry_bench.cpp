@@ -34,18 +34,19 @@ FilterPicture filter_picture_of(const ExposureGroup& group,
     }
     picture.transmission = rig::remove_veil(rate, result.layout.size_px, radiometry);
     for (std::size_t k = 0; k < rate.size(); ++k) {
-        const double flat = result.maps.response[k] *
-                            result.flat->rate_dn_per_s[static_cast<std::size_t>(
-                                result.layout.color(k))];
+        const double flat =
+            result.maps.response[k] *
+            result.flat->rate_dn_per_s[static_cast<std::size_t>(result.layout.color(k))];
         picture.transmission[k] /= static_cast<float>(flat);
         if (result.maps.is_bad[k] != 0.0F || stack.mean_dn[k] >= radiometry.saturation_dn)
             continue;
         const double signal_dn = std::max(0.0, static_cast<double>(rate[k]) * t_s);
         const double counts =
             std::sqrt((read_dn2 + signal_dn / radiometry.gain_e_per_dn) / stack.count +
-                      dark_dn * dark_dn) / (t_s * flat);
-        picture.sigma[k] = static_cast<float>(std::hypot(
-            counts, picture.transmission[k] * result.maps.response_sigma_rel[k]));
+                      dark_dn * dark_dn) /
+            (t_s * flat);
+        picture.sigma[k] = static_cast<float>(
+            std::hypot(counts, picture.transmission[k] * result.maps.response_sigma_rel[k]));
     }
     return picture;
 }
@@ -76,8 +77,7 @@ std::vector<FilterView> measure_filter(std::span<const ExposureGroup> views,
     for (std::size_t color = 0; color < filter.peak.size(); ++color)
         result.parameters.push_back(
             {fmt::format("filter_peak_{}", color), filter.peak[color], filter.peak_sigma[color]});
-    result.parameters.push_back(
-        {"filter_turn_in_u_rad", filter.turn_rad, filter.turn_sigma_rad});
+    result.parameters.push_back({"filter_turn_in_u_rad", filter.turn_rad, filter.turn_sigma_rad});
     flag_filter(result);
     std::vector<FilterView> centers;
     for (const FilterCenter& center : filter.centers)
@@ -97,18 +97,17 @@ void measure_scale(const capture::Capture& capture,
         progress("scale", 0.0);
     rig::Radiometry& radiometry = result.radiometry;
     if (photometer)
-        result.scale = fit_scale(
-            scale_points_of(frames.brackets, frames.darks, result.layout, result.dark, radiometry,
-                            result.maps, *photometer, read),
-            photometer->reading_sigma_rel);
+        result.scale =
+            fit_scale(scale_points_of(frames.brackets, frames.darks, result.layout, result.dark,
+                                      radiometry, result.maps, *photometer, read),
+                      photometer->reading_sigma_rel);
     if (result.scale) {
         radiometry.is_absolute = true;
         radiometry.scale_lx_s_per_dn = result.scale->scale_lx_s_per_dn;
         radiometry.scale_sigma_rel = result.scale->sigma_rel;
         radiometry.scale_systematic_rel = options.photometer_mismatch_rel;
-        result.parameters.push_back(
-            {"scale_lx_s_per_dn", result.scale->scale_lx_s_per_dn,
-             result.scale->sigma_rel * result.scale->scale_lx_s_per_dn});
+        result.parameters.push_back({"scale_lx_s_per_dn", result.scale->scale_lx_s_per_dn,
+                                     result.scale->sigma_rel * result.scale->scale_lx_s_per_dn});
     }
     if (progress)
         progress("stray light", 0.7);
@@ -119,14 +118,12 @@ void measure_scale(const capture::Capture& capture,
     if (result.filter)
         profile = result.filter->profile;
     result.stray =
-        stray_of(frames.brackets, frames.darks, result.layout, result.dark, radiometry,
-                 result.maps, flat_rate, profile, result.filter ? result.filter->peak[0] : 1.0,
-                 read);
+        stray_of(frames.brackets, frames.darks, result.layout, result.dark, radiometry, result.maps,
+                 flat_rate, profile, result.filter ? result.filter->peak[0] : 1.0, read);
     radiometry.stray_lx =
         result.stray.is_room_measured ? result.stray.room_lx : result.stray.room_bound_lx;
     if (result.stray.is_room_measured)
-        result.parameters.push_back(
-            {"stray_lx", result.stray.room_lx, result.stray.room_sigma_lx});
+        result.parameters.push_back({"stray_lx", result.stray.room_lx, result.stray.room_sigma_lx});
     flag_scale(result);
     result.time_s +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -55,10 +55,10 @@ ChosenPixels choose_pixels(std::span<const Photograph> photographs,
     }
     constexpr std::size_t kWanted = 2 * kSide * kSide;
     if (usable.size() < kWanted)
-        throw Error{"cannot recover the response", "bracket",
-                    fmt::format("{} pixels well exposed in {} photographs", kWanted,
-                                kLeastExposures),
-                    fmt::format("{}", usable.size())};
+        throw Error{
+            "cannot recover the response", "bracket",
+            fmt::format("{} pixels well exposed in {} photographs", kWanted, kLeastExposures),
+            fmt::format("{}", usable.size())};
     std::sort(usable.begin(), usable.end());
     ChosenPixels chosen;
     for (std::size_t k = 0; k < kWanted; ++k) {
@@ -91,8 +91,7 @@ std::vector<std::vector<double>> debevec(std::span<const Photograph> photographs
     std::vector<std::vector<double>> light(static_cast<std::size_t>(channels));
     for (int c = 0; c < channels; ++c) {
         for (int value = 0; value < kLevels; ++value)
-            light[static_cast<std::size_t>(c)].push_back(
-                response.ptr<float>(value)[c]);
+            light[static_cast<std::size_t>(c)].push_back(response.ptr<float>(value)[c]);
     }
     return light;
 }
@@ -139,8 +138,8 @@ std::array<double, 256> held_out_sigma(std::span<const Photograph> photographs,
                                        const std::vector<std::size_t>& pixels) {
     std::array<double, kLevels> squares{}, counts{};
     for (const std::size_t pixel : pixels) {
-        const std::size_t k = pixel * static_cast<std::size_t>(channels) +
-                              static_cast<std::size_t>(channel);
+        const std::size_t k =
+            pixel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel);
         for (std::size_t e = 0; e + 1 < photographs.size(); ++e) {
             const std::size_t a = photographs[e].values[k], b = photographs[e + 1].values[k];
             if (a < kDark || b < kDark || a > kBright || b > kBright)
@@ -193,9 +192,9 @@ ResponseCurve recover_response(std::span<const Photograph> photographs,
     for (std::vector<double>& light : debevec(photographs, channels, chosen.training)) {
         make_monotone(light);
         response.linear.push_back(curve_of(light));
-        response.sigma_rel.push_back(held_out_sigma(
-            photographs, channels, static_cast<int>(response.linear.size()) - 1,
-            response.linear.back(), chosen.held_out));
+        response.sigma_rel.push_back(held_out_sigma(photographs, channels,
+                                                    static_cast<int>(response.linear.size()) - 1,
+                                                    response.linear.back(), chosen.held_out));
     }
     return response;
 }

@@ -117,7 +117,8 @@ double floor_lx(const std::vector<ScalePoint>& points) {
         squares += point.reading_lx * point.reading_lx;
         count += 1.0;
     }
-    return count < 2.0 ? 0.0 : std::sqrt(std::max(0.0, (squares - sum * sum / count) / (count - 1.0)));
+    return count < 2.0 ? 0.0
+                       : std::sqrt(std::max(0.0, (squares - sum * sum / count) / (count - 1.0)));
 }
 
 }  // namespace
@@ -140,10 +141,9 @@ std::vector<float> light_of(const capture::Frame& frame,
     }
     light = rig::remove_veil(light, layout.size_px, radiometry);
     for (std::size_t k = 0; k < light.size(); ++k) {
-        const bool is_usable =
-            maps.is_bad[k] == 0.0F && frame.values[k] < radiometry.saturation_dn;
-        light[k] = is_usable ? light[k] / maps.response[k]
-                             : std::numeric_limits<float>::quiet_NaN();
+        const bool is_usable = maps.is_bad[k] == 0.0F && frame.values[k] < radiometry.saturation_dn;
+        light[k] =
+            is_usable ? light[k] / maps.response[k] : std::numeric_limits<float>::quiet_NaN();
     }
     return light;
 }
@@ -206,8 +206,7 @@ std::optional<ScaleResult> fit_scale(std::vector<ScalePoint> points, double read
     ScaleResult result;
     double scale = 0, offset = 0, determinant = 0, s0 = 0;
     const auto sigma_of = [&](const ScalePoint& point, bool is_first) {
-        const double expected =
-            is_first ? point.reading_lx : scale * point.light_dn_per_s + offset;
+        const double expected = is_first ? point.reading_lx : scale * point.light_dn_per_s + offset;
         return std::hypot(std::hypot(reading_sigma_rel * expected, floor),
                           is_first ? 0.0 : scale * point.sigma);
     };

@@ -12,8 +12,9 @@ namespace nearfield::calibrate {
 /// A light frame and what the photometer said during it.
 struct ScalePoint {
     glm::ivec2 position{-1};
-    double exposure_us = 0;                  // asked for; 0: the lamp is off
-    double light_dn_per_s = 0, sigma = 0;    // about the photometer's point, luminance, sigma of counts
+    double exposure_us = 0;  // asked for; 0: the lamp is off
+    double light_dn_per_s = 0,
+           sigma = 0;  // about the photometer's point, luminance, sigma of counts
     double reading_lx = 0;
     double residual_sigmas = 0;
 };
@@ -30,8 +31,8 @@ struct ScaleResult {
 /// Where and how the photometer looks.
 struct PhotometerPlace {
     glm::dvec2 at_px{0};
-    double radius_px = 4;         // of the disk whose light is fitted by a plane
-    double view_angle_rad = 0;    // between the screen's normal and the camera
+    double radius_px = 4;       // of the disk whose light is fitted by a plane
+    double view_angle_rad = 0;  // between the screen's normal and the camera
     double reading_sigma_rel = 0.003;
 };
 

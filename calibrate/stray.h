@@ -23,13 +23,14 @@ struct StrayResult {
     /// What flats, boards and filter views lose by darks that see a lit screen, at most: median
     /// dark rate over the flats' rate.
     double flat_bound_rel = 0;
-    /// Even light in a frame over the light that its filter position holds back; the smallest of
-    /// all positions.
+    /// Even light in a frame over the light that its filter position holds back: the least that
+    /// parts of the screen see, which other positions light, and three sigma of noise.
     double beside_bound = 0;
     bool has_beside_bound = false;
 };
 
-/// In      flat_rate_dn_per_s: of the flats; filter: its profile with peak 1, and that peak; none: no
+/// In      flat_rate_dn_per_s: of the flats; filter: its profile with peak 1, and that peak; none:
+/// no
 ///         bound for light beside it.
 /// Cost    reads each bracket's shortest and longest frame.
 StrayResult stray_of(std::span<const Bracket> brackets,

@@ -30,8 +30,7 @@ struct WidthSums {
 
 // Pixels that are dark and away from bright ones.
 std::vector<std::size_t> dark_pixels(const std::vector<float>& picture, glm::ivec2 size) {
-    const float limit =
-        static_cast<float>(kDarkShare) * quantile_of(picture, 0.98);
+    const float limit = static_cast<float>(kDarkShare) * quantile_of(picture, 0.98);
     const int away = std::max(kLeastAway_px, static_cast<int>(kAway * size.x));
     const auto width = static_cast<std::size_t>(size.x);
     const auto at = [width](int x, int y) {
@@ -108,8 +107,8 @@ std::vector<float> net_of(const capture::FrameRecord& record,
     const auto t_s = static_cast<float>(record.shot.exposure_us * kVeilSecondsPerMicrosecond);
     std::vector<float> net(frame.values.size());
     for (std::size_t k = 0; k < net.size(); ++k) {
-        net[k] = static_cast<float>(frame.values[k]) - dark.black_dn[k] -
-                 dark.dark_dn_per_s[k] * t_s;
+        net[k] =
+            static_cast<float>(frame.values[k]) - dark.black_dn[k] - dark.dark_dn_per_s[k] * t_s;
         if (dark.is_hot[k] != 0.0F && k > 1)
             net[k] = net[k - 1];
     }
@@ -141,8 +140,8 @@ void find_width(const std::vector<VeilPoint>& points, VeilResult& result) {
     result.share += shift * (rise + shift * bend);
     result.chi2 -= 0.25 * (below - above) * shift;
     const double share_by_width = rise / step;  // moves with the width's error
-    result.share_sigma = std::hypot(
-        result.share_sigma, share_by_width * result.sigma_sigma_px / result.sigma_px);
+    result.share_sigma =
+        std::hypot(result.share_sigma, share_by_width * result.sigma_sigma_px / result.sigma_px);
 }
 
 VeilResult fit_round(std::span<const capture::FrameRecord* const> frames,
@@ -163,8 +162,9 @@ VeilResult fit_round(std::span<const capture::FrameRecord* const> frames,
     VeilResult result;
     for (const capture::FrameRecord* record : frames) {
         const std::vector<float> seen = net_of(*record, dark, read);
-        const std::vector<float> clear = rig::remove_veil(
-            seen, layout.size_px, layout.mosaic, std::clamp(before.share, 0.0, 0.4), before.sigma_px);
+        const std::vector<float> clear =
+            rig::remove_veil(seen, layout.size_px, layout.mosaic,
+                             std::clamp(before.share, 0.0, 0.4), before.sigma_px);
         const double dark_dn = dark.sigma_dn(record->shot.exposure_us * kVeilSecondsPerMicrosecond);
         for (int p = 0; p < interleave.planes(); ++p) {
             VeilPlane plane;

@@ -26,9 +26,10 @@ struct VeilResult {
 };
 
 /// Share and width of the lens' veil, from pictures of a board before a black backdrop: dark pixels
-/// well off anything bright see the veil alone, P = v G * I + c. The constant c, one a picture, takes
-/// what is even: errors of the black level, a backdrop that is not quite black, room light in the
-/// darks. Widths are tried on a ladder; the best follows from the parabola through three of them.
+/// well off anything bright see the veil alone, P = v G * I + c. The constant c, one a picture,
+/// takes what is even: errors of the black level, a backdrop that is not quite black, room light in
+/// the darks. Widths are tried on a ladder; the best follows from the parabola through three of
+/// them.
 ///
 /// In      frames: target views; radiometry: gain, read noise, saturation
 /// Out     not significant where no view shows enough dark pixels.

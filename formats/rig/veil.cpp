@@ -49,8 +49,8 @@ std::vector<float> blur_and_turn(const std::vector<float>& in,
         for (int x = -1; x <= size.x; ++x) {
             float sum = 0.0F;
             for (int k = std::max(0, x - reach); k <= std::min(size.x - 1, x + reach); ++k)
-                sum += weights[static_cast<std::size_t>(std::abs(k - x))] *
-                       in[index_of(k, y, size.x)];
+                sum +=
+                    weights[static_cast<std::size_t>(std::abs(k - x))] * in[index_of(k, y, size.x)];
             out[index_of(y, x + 1, size.y)] = sum;
         }
     }
@@ -74,8 +74,8 @@ std::vector<float> wide_blur(std::span<const float> picture, glm::ivec2 size_px,
     const double sigma_blocks =
         std::sqrt(std::max(0.04, std::pow(sigma_px / block_px, 2.0) - (block_px > 1 ? 0.25 : 0.0)));
     const std::vector<float> weights = gaussian_weights(sigma_blocks);
-    const std::vector<float> wide = blur_and_turn(blur_and_turn(means, blocks, weights),
-                                                  {blocks.y, blocks.x + 2}, weights);
+    const std::vector<float> wide =
+        blur_and_turn(blur_and_turn(means, blocks, weights), {blocks.y, blocks.x + 2}, weights);
     const int wide_columns = blocks.x + 2;
     std::vector<float> veil(picture.size());
     for (int y = 0; y < size_px.y; ++y) {
@@ -144,8 +144,8 @@ std::vector<float> remove_veil(std::span<const float> picture,
                                double share,
                                double sigma_px) {
     const Interleave interleave = interleave_of(mosaic);
-    const std::size_t count = index_of(0, size_px.y, size_px.x) *
-                              static_cast<std::size_t>(interleave.channels);
+    const std::size_t count =
+        index_of(0, size_px.y, size_px.x) * static_cast<std::size_t>(interleave.channels);
     if (picture.size() != count)
         throw Error{"cannot remove veil", "picture", fmt::format("{} values", count),
                     fmt::format("{}", picture.size())};

@@ -15,13 +15,14 @@ namespace {
 
 using capture::ShotKind;
 
-glm::dvec2 seen_px(const sample_data::PreparedBench& truth, glm::ivec2 position) {
-    const auto k = static_cast<std::size_t>(position.y * truth.bench.filter.grid.x + position.x);
-    const glm::dvec3 in_bench = sample_data::apply(
-        truth.places.bench_from_filter, glm::dvec3(truth.places.position_m[k], 0.0));
+glm::dvec2 seen_px(const sample_data::Bench& bench, glm::ivec2 position) {
+    const sample_data::Places places = sample_data::make_places(bench);
+    const auto k = static_cast<std::size_t>(position.y * bench.filter.grid.x + position.x);
+    const glm::dvec3 in_bench =
+        sample_data::apply(places.bench_from_filter, glm::dvec3(places.position_m[k], 0.0));
     return *sample_data::project_px(
-        truth.bench.camera,
-        sample_data::apply(sample_data::inverse(truth.bench.camera.bench_from_camera), in_bench));
+        bench.camera,
+        sample_data::apply(sample_data::inverse(bench.camera.bench_from_camera), in_bench));
 }
 
 /// A camera that sees the filter 20 pixels a pitch, in the middle of its picture.
@@ -35,7 +36,9 @@ sample_data::Bench filter_bench(const std::string& basis) {
     bench.camera.cx_px = 170;
     bench.camera.cy_px = 56;
     bench.accuracy.subsamples = 4;
-    const glm::dvec2 middle = seen_px(*sample_data::prepare(bench), {1, 1});
+    bench.accuracy.screen_step_px = 8;  // the screen is not looked at
+    bench.accuracy.lens_step = 8;
+    const glm::dvec2 middle = seen_px(bench, {1, 1});
     bench.camera.cx_px += 60.0 - middle.x;
     bench.camera.cy_px += 56.0 - middle.y;
     return bench;
@@ -56,11 +59,16 @@ calibrate::FilterGeometry geometry_of(const LabFrames& lab) {
     const sample_data::PreparedBench& truth = *lab.prepared;
     const sample_data::BenchCamera& camera = truth.bench.camera;
     calibrate::FilterGeometry geometry;
-    geometry.lens = {rig::LensModel::Brown5, camera.size_px, camera.fx_px, camera.fy_px,
-                     camera.cx_px, camera.cy_px,
+    geometry.lens = {rig::LensModel::Brown5,
+                     camera.size_px,
+                     camera.fx_px,
+                     camera.fy_px,
+                     camera.cx_px,
+                     camera.cy_px,
                      {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}};
-    const Rigid u_frame = sample_data::inverse(camera.bench_from_camera) *
-                          truth.places.bench_from_filter;
+    using sample_data::operator*;
+    const Rigid u_frame =
+        sample_data::inverse(camera.bench_from_camera) * truth.places.bench_from_filter;
     geometry.camera_from_u = u_frame;
     geometry.pitch_m = truth.bench.filter.pitch_m;
     geometry.psf_sigma_px = camera.psf_sigma_px;
@@ -91,12 +99,13 @@ TEST_P(Filter, CentersProfileAndPeakAreFound) {
     const sample_data::PreparedBench& truth = *lab.prepared;
     ASSERT_EQ(measured.views.size(), 3U);
     for (const calibrate::FilterView& view : measured.views) {
-        const glm::dvec2 off = view.center_px - seen_px(truth, view.position);
+        const glm::dvec2 off = view.center_px - seen_px(truth.bench, view.position);
         const glm::dvec2 sigma(std::sqrt(view.covariance_px2[0][0]),
                                std::sqrt(view.covariance_px2[1][1]));
         EXPECT_LT(glm::length(off), 0.02);
-        EXPECT_LT(std::abs(off.x), 3.5 * sigma.x) << off.x;
-        EXPECT_LT(std::abs(off.y), 3.5 * sigma.y) << off.y;
+        // Beside sigma what the bench's four samples a pixel blur differently.
+        EXPECT_LT(std::abs(off.x), 3.5 * sigma.x + 0.004) << off.x;
+        EXPECT_LT(std::abs(off.y), 3.5 * sigma.y + 0.004) << off.y;
         EXPECT_LT(sigma.x, 0.01);
     }
     const calibrate::FilterProfileResult& filter = *measured.result.filter;
@@ -106,8 +115,9 @@ TEST_P(Filter, CentersProfileAndPeakAreFound) {
     const double half = 0.5 * static_cast<double>(nominal.cells.size());
     double squares = 0;
     for (double x = -half + 0.025; x < half; x += 0.05)
-        squares += std::pow(model::eval(filter.profile, x) - model::eval(nominal, x) / at_center,
-                            2.0) * 0.05 / (2.0 * half);
+        squares +=
+            std::pow(model::eval(filter.profile, x) - model::eval(nominal, x) / at_center, 2.0) *
+            0.05 / (2.0 * half);
     EXPECT_LT(std::sqrt(squares), 0.003);
     // What the camera's own color sees of the filter, against white.
     const double peak = (150 * 0.9 + 250 * 0.8 + 90 * 0.7) / 490 * at_center * at_center;
@@ -125,8 +135,7 @@ TEST(FilterProfile, AFilterOfAnotherWidthIsToldFromTheNominalOne) {
     sample_data::Bench bench = filter_bench("bspline");
     LabFrames lab = views_of(bench);
     const capture::Capture capture = lab.capture();
-    calibrate::RadiometryResult result =
-        calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
+    calibrate::RadiometryResult result = calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
     calibrate::FilterGeometry geometry = geometry_of(lab);
     geometry.pitch_m *= 1.05;  // believed
     calibrate::measure_filter(calibrate::sorted_frames(capture).filters, geometry,
@@ -140,10 +149,10 @@ TEST(FilterProfile, AViewWithoutFilterIsRefused) {
     calibrate::FilterPicture empty;
     empty.transmission.assign(120 * 112, 0.0F);
     empty.sigma.assign(120 * 112, 0.01F);
-    EXPECT_THROW(calibrate::filter_profile_of({&empty, 1}, geometry_of(lab),
-                                              model::make_profile("box"), 1,
-                                              std::vector<int>(120 * 112)),
-                 Error);
+    EXPECT_THROW(
+        calibrate::filter_profile_of({&empty, 1}, geometry_of(lab), model::make_profile("box"), 1,
+                                     std::vector<int>(120 * 112)),
+        Error);
 }
 
 TEST(FilterProfile, MomentsOfTruncatedGaussiansAreTheirIntegrals) {
@@ -154,8 +163,8 @@ TEST(FilterProfile, MomentsOfTruncatedGaussiansAreTheirIntegrals) {
             constexpr int kSteps = 200000;
             for (int k = 0; k < kSteps; ++k) {
                 const double t = -0.5 + (k + 0.5) / kSteps;
-                const double density =
-                    std::exp(-0.5 * (t - x) * (t - x) / (s * s)) / (s * std::sqrt(6.283185307179586));
+                const double density = std::exp(-0.5 * (t - x) * (t - x) / (s * s)) /
+                                       (s * std::sqrt(6.283185307179586));
                 sum += density / kSteps * glm::dvec3(1.0, t, t * t);
             }
             for (int k = 0; k < 3; ++k)

@@ -35,8 +35,8 @@ struct LabFrames {
     calibrate::PixelLayout layout() const;
 };
 
-/// A camera of 96 x 96 pixels before flats, boards and a 3 x 3 filter: everything that a sensor does
-/// wrong is on.
+/// A camera of 96 x 96 pixels before flats, boards and a 3 x 3 filter: everything that a sensor
+/// does wrong is on.
 sample_data::Bench sensor_bench();
 
 }  // namespace nearfield::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps together, on a color camera; and what is refused.
 #include "calibrate/radiometry.h"
+
 #include "formats/files/error.h"
 #include "sample_data/bench/prepared.h"
 #include "tests/calibrate/lab_frames.h"
@@ -49,8 +50,7 @@ bool has_flag(const calibrate::RadiometryResult& result, const std::string& part
 TEST(Radiometry, AColorCameraIsCalibratedFromItsCapture) {
     const LabFrames lab = color_lab(color_bench());
     const capture::Capture capture = lab.capture();
-    calibrate::RadiometryResult result =
-        calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
+    calibrate::RadiometryResult result = calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
     EXPECT_EQ(result.radiometry.mosaic, "rggb");
     EXPECT_NEAR(result.radiometry.gain_e_per_dn, 2.7, 3.0 * result.radiometry.gain_sigma);
     // Every color's response is about 1, whatever its share of white.
@@ -88,8 +88,7 @@ TEST(Radiometry, LightBesideTheFilterIsBoundedFromAbove) {
     bench.camera.mosaic = sample_data::Mosaic::Mono;
     const LabFrames lab = color_lab(bench);
     const capture::Capture capture = lab.capture();
-    calibrate::RadiometryResult result =
-        calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
+    calibrate::RadiometryResult result = calibrate::calibrate_sensor(capture, lab.reader(), {}, {});
     calibrate::FilterProfileResult filter;
     filter.profile = bench.filter.profile;
     for (auto& cell : filter.profile.cells) {
@@ -100,9 +99,8 @@ TEST(Radiometry, LightBesideTheFilterIsBoundedFromAbove) {
     result.filter = filter;
     calibrate::measure_scale(capture, std::nullopt, {}, lab.reader(), {}, result);
     ASSERT_TRUE(result.stray.has_beside_bound);
-    EXPECT_GT(result.stray.beside_bound, 0.0);
-    EXPECT_LT(result.stray.beside_bound, 0.02);
-    std::printf("beside bound %g\n", result.stray.beside_bound);
+    EXPECT_GT(result.stray.beside_bound, 0.5 * bench.stray.blocked_share);
+    EXPECT_LT(result.stray.beside_bound, 10.0 * bench.stray.blocked_share);
 }
 
 TEST(Radiometry, MissingDarksAreRefusedOrAssumedAndFlagged) {

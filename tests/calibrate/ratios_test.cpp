@@ -39,8 +39,7 @@ struct Known {
 
 Known known_of(const LabFrames& lab) {
     Known known;
-    known.dark =
-        calibrate::dark_of(lab.groups(ShotKind::Dark), lab.layout(), lab.reader(), 8.0);
+    known.dark = calibrate::dark_of(lab.groups(ShotKind::Dark), lab.layout(), lab.reader(), 8.0);
     const sample_data::PreparedBench& truth = *lab.prepared;
     known.radiometry.gain_e_per_dn = truth.bench.camera.gain_e_per_dn;
     known.radiometry.read_noise_dn = std::sqrt(5.5 * 5.5 / (2.7 * 2.7) + 1.0 / 12.0);
@@ -58,8 +57,8 @@ Known known_of(const LabFrames& lab) {
 }
 
 calibrate::RatioResult ratios_of_lab(const LabFrames& lab, const Known& known) {
-    return calibrate::exposure_ratios_of(lab.brackets(), lab.layout(), known.dark,
-                                         known.radiometry, known.maps, lab.reader(), 0.02);
+    return calibrate::exposure_ratios_of(lab.brackets(), lab.layout(), known.dark, known.radiometry,
+                                         known.maps, lab.reader(), 0.02);
 }
 
 TEST(ExposureRatios, TrueTimesAreFoundWithin3SigmaOfAThousandth) {
@@ -91,7 +90,8 @@ TEST(ExposureRatios, SigmaIsWhatRepeatedCapturesScatterBy) {
         bench.seed = static_cast<std::uint64_t>(seed);
         const LabFrames lab = lights_of(bench);
         for (const calibrate::ExposureRatio& one : ratios_of_lab(lab, known_of(lab)).ratios) {
-            const double real = one.shorter_us == kShort_us ? kMiddle_us / 4100.0 : 63500.0 / kMiddle_us;
+            const double real =
+                one.shorter_us == kShort_us ? kMiddle_us / 4100.0 : 63500.0 / kMiddle_us;
             pulls.push_back((one.ratio / real - 1.0) / one.sigma_rel);
         }
     }
@@ -149,7 +149,6 @@ TEST(Scale, LuxForLightIsFoundWithin3Sigma) {
     bench.stray.veil_lx = 2.0;
     LabFrames lab = lights_of(bench);
     Known known = known_of(lab);
-    std::printf("ERR %g\n", lab.prepared->error.total_rel);
     known.radiometry.exposures = {
         {kShort_us, 4100.0, 0.0}, {kMiddle_us, kMiddle_us, 0.0}, {kLong_us, 63500.0, 0.0}};
     // Where the photometer's point is seen, by hand: camera at (0.2, -0.02, 0.7), turned half
@@ -159,15 +158,14 @@ TEST(Scale, LuxForLightIsFoundWithin3Sigma) {
     const glm::dvec2 x = glm::dvec2(seen) / seen.z;
     const double r2 = glm::dot(x, x);
     const double radial = 1.0 + r2 * (-0.1 + 0.05 * r2);
-    const glm::dvec2 bent(
-        x.x * radial + 2 * 0.002 * x.x * x.y - 0.001 * (r2 + 2 * x.x * x.x),
-        x.y * radial + 0.002 * (r2 + 2 * x.y * x.y) - 2 * 0.001 * x.x * x.y);
+    const glm::dvec2 bent(x.x * radial + 2 * 0.002 * x.x * x.y - 0.001 * (r2 + 2 * x.x * x.x),
+                          x.y * radial + 0.002 * (r2 + 2 * x.y * x.y) - 2 * 0.001 * x.x * x.y);
     calibrate::PhotometerPlace place;
     place.at_px = bent * 800.0 + glm::dvec2(22, 80);
     place.radius_px = 2;
-    const std::vector<calibrate::ScalePoint> points = calibrate::scale_points_of(
-        lab.brackets(), lab.groups(ShotKind::Dark), lab.layout(), known.dark, known.radiometry,
-        known.maps, place, lab.reader());
+    const std::vector<calibrate::ScalePoint> points =
+        calibrate::scale_points_of(lab.brackets(), lab.groups(ShotKind::Dark), lab.layout(),
+                                   known.dark, known.radiometry, known.maps, place, lab.reader());
     const auto scale = calibrate::fit_scale(points, 0.003);
     ASSERT_TRUE(scale);
     // Light in DN/s of a screen under one lux: rho / pi cd/m^2 times the flats' rate of 1 cd/m^2.
@@ -179,8 +177,6 @@ TEST(Scale, LuxForLightIsFoundWithin3Sigma) {
     // Beside sigma the bench's own stated error of light on the screen.
     EXPECT_NEAR(scale->scale_lx_s_per_dn * per_lx, 1.0,
                 3.0 * scale->sigma_rel + lab.prepared->error.total_rel);
-    for (auto& q : scale->points) std::printf("%d %d %g: %g +- %g lx %g  %g\n", q.position.x, q.position.y, q.exposure_us, q.light_dn_per_s, q.sigma, q.reading_lx, q.residual_sigmas);
-    std::printf("px %g %g scale %g\n", place.at_px.x, place.at_px.y, scale->scale_lx_s_per_dn * per_lx);
     EXPECT_LT(scale->sigma_rel, 0.003);
     EXPECT_NEAR(scale->offset_lx, 2.0, 3.0 * scale->offset_sigma_lx);
     EXPECT_LT(scale->chi2, scale->freedom + 5.0 * std::sqrt(2.0 * scale->freedom));

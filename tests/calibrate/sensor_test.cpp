@@ -227,9 +227,8 @@ TEST(Linearity, ABentResponseIsStraightenedByItsCurve) {
                 std::max(0.0, std::round(48.0 + bent_dn(double(value) - 48.0))));
         return frame;
     };
-    const calibrate::FlatResult flat =
-        calibrate::flat_field_of(lab.groups(ShotKind::Flat), lab.layout(), dark,
-                                 radiometry_of_lab(lab, dark), bent, 0.2);
+    const calibrate::FlatResult flat = calibrate::flat_field_of(
+        lab.groups(ShotKind::Flat), lab.layout(), dark, radiometry_of_lab(lab, dark), bent, 0.2);
     EXPECT_GT(flat.linearity_rel, 0.01);
     ASSERT_FALSE(flat.linear.x.empty());
     rig::Radiometry radiometry;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formats/rig/veil.h"
+
 #include "calibrate/veil_fit.h"
 #include "formats/files/error.h"
-#include "formats/rig/veil.h"
 #include "sample_data/bench/prepared.h"
 #include "tests/calibrate/lab_frames.h"
 
@@ -56,8 +57,8 @@ TEST(Veil, WhatWasAddedIsRemoved) {
         std::vector<float> veiled = picture;
         for (int p = 0; p < interleave.planes(); ++p) {
             std::vector<float> plane = interleave.plane_of(picture, size, p);
-            const std::vector<float> wide = rig::wide_blur(
-                plane, interleave.size_px(size, p), kSigma / interleave.step.x);
+            const std::vector<float> wide =
+                rig::wide_blur(plane, interleave.size_px(size, p), kSigma / interleave.step.x);
             for (std::size_t k = 0; k < plane.size(); ++k)
                 plane[k] += float(kShare) * (wide[k] - plane[k]);
             interleave.put(plane, p, size, veiled);
