@@ -37,7 +37,7 @@ double side_from(const JsonField& field, double most_m) {
 }
 
 std::string dictionary_from(const JsonField& field) {
-    const std::string name = field.text();
+    std::string name = field.text();
     if (std::find(kDictionaries.begin(), kDictionaries.end(), name) == kDictionaries.end())
         throw Error{"bad value", field.where(),
                     "one of OpenCV's dictionaries, 4x4_50 ... 7x7_1000 or original",

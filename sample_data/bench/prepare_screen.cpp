@@ -192,16 +192,17 @@ std::vector<double> strayed_light(const LensLight& light, const SeenColors& colo
     const Bench& bench = *light.bench;
     const ScreenGrid seen =
         make_screen_grid(bench, *light.places, make_sample_grid(bench.camera, 1));
-    // Midpoints of a few hundred parts: the mean of what is smooth over many of them.
+    // Midpoints of a few hundred parts of the area that the grid's own points stand for.
     constexpr glm::ivec2 kParts{32, 24};
-    const glm::dvec2 step_m = seen.step_m * glm::dvec2(seen.count - 1) / glm::dvec2(kParts);
+    const glm::dvec2 step_m = seen.step_m * glm::dvec2(seen.count) / glm::dvec2(kParts);
+    const glm::dvec2 min_m = seen.min_m - 0.5 * seen.step_m;
     const auto positions = static_cast<std::size_t>(position_count(bench));
     std::vector<double> blocked(positions, 0.0);
     for (int row = 0; row < kParts.y; ++row) {
         std::vector<glm::dvec3> points;
         for (int column = 0; column < kParts.x; ++column)
             points.push_back(
-                screen_point(*light.places, seen.min_m + (glm::dvec2(column, row) + 0.5) * step_m));
+                screen_point(*light.places, min_m + (glm::dvec2(column, row) + 0.5) * step_m));
         const LineLight line = light_on_line(light, points, color);
         for (std::size_t m = 0; m < positions; ++m)
             for (std::size_t i = 0; i < points.size(); ++i)
