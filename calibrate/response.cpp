@@ -174,9 +174,9 @@ std::vector<float> merged(std::span<const Photograph> photographs,
         double sum = 0, weights = 0;
         for (const Photograph& photograph : photographs) {
             const int value = photograph.values[k];
-            if (value < kWellDark || value > kWellBright)
+            if (value <= kWellDark || value >= kWellBright)
                 continue;
-            const double weight = std::min(value, kResponseLevels - 1 - value);
+            const double weight = std::min(value - kWellDark, kWellBright - value);
             sum +=
                 weight * std::log(curve.y[static_cast<std::size_t>(value)] / photograph.exposure_s);
             weights += weight;
