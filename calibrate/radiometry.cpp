@@ -158,6 +158,7 @@ void recover(const SortedFrames& frames, const FrameReader& read, RadiometryResu
         require_same(result.layout, *record);
         const capture::Frame frame = read(*record);
         Photograph photograph;
+        photograph.width_px = frame.size_px.x;
         const int shift = std::max(0, frame.bits - 8);
         for (const std::uint16_t value : frame.values)
             photograph.values.push_back(static_cast<std::uint8_t>(value >> shift));

@@ -27,7 +27,7 @@ namespace nearfield::calibrate {
 struct RadiometryOptions {
     /// Without darks: take this black level and no dark current, and say so. Else they are refused.
     std::optional<double> assumed_black_dn;
-    double hot_sigmas = 8;               // a pixel is hot beyond; lower: more pixels left out
+    double hot_sigmas = 6;               // a pixel is hot beyond; lower: more pixels left out
     double dead_rel = 0.25;              // a pixel is dead that far from its neighbors
     double unknown_ratio_rel = 0.02;     // sigma of an exposure that could not be compared
     double psf_sigma_px = 0.7;           // of the lens, for the filter's edges

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/response.h"
 
+#include "calibrate/response_pixels.h"
 #include "formats/files/error.h"
 
 #include <fmt/format.h>
@@ -13,60 +14,7 @@
 namespace nearfield::calibrate {
 namespace {
 
-constexpr int kLevels = 256;
-constexpr int kDark = 10, kBright = 245;  // well exposed lies between
-constexpr std::size_t kLeastExposures = 3;
-constexpr int kSide = 18;  // training pixels: kSide^2, enough that 255 unknowns are outnumbered
 constexpr float kSmoothness = 10.0F;  // Debevec and Malik's lambda
-
-// Pixels that are well exposed in three photographs or more in all channels, spread over how
-// bright they are; every second one is for training.
-struct ChosenPixels {
-    std::vector<std::size_t> training, held_out;
-};
-
-int well_exposed(std::span<const Photograph> photographs, std::size_t first, int channels) {
-    int count = 0;
-    for (const Photograph& photograph : photographs) {
-        bool is_well = true;
-        for (int c = 0; c < channels; ++c) {
-            const int value = photograph.values[first + static_cast<std::size_t>(c)];
-            is_well = is_well && value >= kDark && value <= kBright;
-        }
-        count += is_well ? 1 : 0;
-    }
-    return count;
-}
-
-ChosenPixels choose_pixels(std::span<const Photograph> photographs,
-                           int channels,
-                           const std::vector<char>& is_used) {
-    const auto step = static_cast<std::size_t>(channels);
-    const std::size_t pixels = photographs[0].values.size() / step;
-    std::vector<std::pair<int, std::size_t>> usable;  // by the sum of all exposures' values
-    for (std::size_t k = 0; k < pixels; ++k) {
-        if ((!is_used.empty() && is_used[k] == 0) ||
-            well_exposed(photographs, k * step, channels) < static_cast<int>(kLeastExposures))
-            continue;
-        int sum = 0;
-        for (const Photograph& photograph : photographs)
-            sum += photograph.values[k * step + step / 2];
-        usable.emplace_back(sum, k);
-    }
-    constexpr std::size_t kWanted = 2 * kSide * kSide;
-    if (usable.size() < kWanted)
-        throw Error{
-            "cannot recover the response", "bracket",
-            fmt::format("{} pixels well exposed in {} photographs", kWanted, kLeastExposures),
-            fmt::format("{}", usable.size())};
-    std::sort(usable.begin(), usable.end());
-    ChosenPixels chosen;
-    for (std::size_t k = 0; k < kWanted; ++k) {
-        const std::size_t pixel = usable[k * (usable.size() - 1) / (kWanted - 1)].second;
-        (k % 2 == 0 ? chosen.training : chosen.held_out).push_back(pixel);
-    }
-    return chosen;
-}
 
 // Light per value of one channel as OpenCV finds it from the training pixels: one small picture.
 std::vector<std::vector<double>> debevec(std::span<const Photograph> photographs,
@@ -75,7 +23,7 @@ std::vector<std::vector<double>> debevec(std::span<const Photograph> photographs
     std::vector<cv::Mat> pictures;
     std::vector<float> times;
     for (const Photograph& photograph : photographs) {
-        cv::Mat picture(kSide, kSide, CV_8UC(channels));
+        cv::Mat picture(kTrainingSide, kTrainingSide, CV_8UC(channels));
         for (std::size_t k = 0; k < training.size(); ++k) {
             for (int c = 0; c < channels; ++c)
                 picture.data[k * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] =
@@ -86,26 +34,43 @@ std::vector<std::vector<double>> debevec(std::span<const Photograph> photographs
         times.push_back(static_cast<float>(photograph.exposure_s));
     }
     cv::Mat response;
-    cv::createCalibrateDebevec(kSide * kSide, kSmoothness, false)
+    cv::createCalibrateDebevec(kTrainingSide * kTrainingSide, kSmoothness, false)
         ->process(pictures, response, times);
     std::vector<std::vector<double>> light(static_cast<std::size_t>(channels));
     for (int c = 0; c < channels; ++c) {
-        for (int value = 0; value < kLevels; ++value)
+        for (int value = 0; value < kResponseLevels; ++value)
             light[static_cast<std::size_t>(c)].push_back(response.ptr<float>(value)[c]);
     }
     return light;
 }
 
-// Pools neighbors that go down (Ayer et al. 1955), on the logarithm.
-void make_monotone(std::vector<double>& light) {
+// The curves' mean: their logarithms', as that is what noise is even in.
+std::vector<std::vector<double>> mean_curve(std::span<const Photograph> photographs,
+                                            int channels,
+                                            const ChosenPixels& chosen) {
+    std::vector<std::vector<double>> mean(static_cast<std::size_t>(channels),
+                                          std::vector<double>(kResponseLevels));
+    for (const std::vector<std::size_t>& training : chosen.training) {
+        const auto curves = debevec(photographs, channels, training);
+        for (std::size_t c = 0; c < mean.size(); ++c) {
+            for (std::size_t value = 0; value < mean[c].size(); ++value)
+                mean[c][value] +=
+                    std::log(std::max(curves[c][value], 1e-12)) / static_cast<double>(kCurves);
+        }
+    }
+    return mean;
+}
+
+// Pools neighbors that go down (Ayer et al. 1955).
+void make_monotone(std::vector<double>& logarithms) {
     struct Pool {
         double sum = 0;
         std::size_t count = 0;
         double mean() const { return sum / static_cast<double>(count); }
     };
     std::vector<Pool> pools;
-    for (const double value : light) {
-        pools.push_back({std::log(std::max(value, 1e-12)), 1});
+    for (const double value : logarithms) {
+        pools.push_back({value, 1});
         while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
             const Pool last = pools.back();
             pools.pop_back();
@@ -116,16 +81,16 @@ void make_monotone(std::vector<double>& light) {
     std::size_t at = 0;
     for (const Pool& pool : pools) {
         for (std::size_t k = 0; k < pool.count; ++k)
-            light[at++] = std::exp(pool.mean());
+            logarithms[at++] = pool.mean();
     }
 }
 
-rig::Curve curve_of(const std::vector<double>& light) {
+rig::Curve curve_of(const std::vector<double>& logarithms) {
     constexpr std::size_t kEqualAt = 128;
     rig::Curve curve;
-    for (std::size_t value = 0; value < light.size(); ++value) {
+    for (std::size_t value = 0; value < logarithms.size(); ++value) {
         curve.x.push_back(static_cast<double>(value));
-        curve.y.push_back(light[value] / light[kEqualAt] * double(kEqualAt));
+        curve.y.push_back(std::exp(logarithms[value] - logarithms[kEqualAt]) * double(kEqualAt));
     }
     return curve;
 }
@@ -136,13 +101,13 @@ std::array<double, 256> held_out_sigma(std::span<const Photograph> photographs,
                                        int channel,
                                        const rig::Curve& curve,
                                        const std::vector<std::size_t>& pixels) {
-    std::array<double, kLevels> squares{}, counts{};
+    std::array<double, kResponseLevels> squares{}, counts{};
     for (const std::size_t pixel : pixels) {
         const std::size_t k =
             pixel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel);
         for (std::size_t e = 0; e + 1 < photographs.size(); ++e) {
             const std::size_t a = photographs[e].values[k], b = photographs[e + 1].values[k];
-            if (a < kDark || b < kDark || a > kBright || b > kBright)
+            if (a < kWellDark || b < kWellDark || a > kWellBright || b > kWellBright)
                 continue;
             const double off = std::log(curve.y[b] / photographs[e + 1].exposure_s) -
                                std::log(curve.y[a] / photographs[e].exposure_s);
@@ -153,11 +118,12 @@ std::array<double, 256> held_out_sigma(std::span<const Photograph> photographs,
         }
     }
     // Over nine values: single ones are seen too rarely.
-    std::array<double, kLevels> sigma{};
+    std::array<double, kResponseLevels> sigma{};
     constexpr int kReach = 4;
-    for (int value = 0; value < kLevels; ++value) {
+    for (int value = 0; value < kResponseLevels; ++value) {
         double sum = 0, count = 0;
-        for (int k = std::max(0, value - kReach); k <= std::min(kLevels - 1, value + kReach); ++k) {
+        for (int k = std::max(0, value - kReach);
+             k <= std::min(kResponseLevels - 1, value + kReach); ++k) {
             sum += squares[static_cast<std::size_t>(k)];
             count += counts[static_cast<std::size_t>(k)];
         }
@@ -187,11 +153,11 @@ ResponseCurve recover_response(std::span<const Photograph> photographs,
     require_bracket(photographs);
     const ChosenPixels chosen = choose_pixels(photographs, channels, is_used);
     ResponseCurve response;
-    response.pixels = static_cast<int>(chosen.training.size());
+    response.pixels = static_cast<int>(kCurves * chosen.training[0].size());
     response.held_out = static_cast<int>(chosen.held_out.size());
-    for (std::vector<double>& light : debevec(photographs, channels, chosen.training)) {
-        make_monotone(light);
-        response.linear.push_back(curve_of(light));
+    for (std::vector<double>& logarithms : mean_curve(photographs, channels, chosen)) {
+        make_monotone(logarithms);
+        response.linear.push_back(curve_of(logarithms));
         response.sigma_rel.push_back(held_out_sigma(photographs, channels,
                                                     static_cast<int>(response.linear.size()) - 1,
                                                     response.linear.back(), chosen.held_out));
@@ -208,13 +174,14 @@ std::vector<float> merged(std::span<const Photograph> photographs,
         double sum = 0, weights = 0;
         for (const Photograph& photograph : photographs) {
             const int value = photograph.values[k];
-            if (value < kDark || value > kBright)
+            if (value <= kWellDark || value >= kWellBright)
                 continue;
-            const double weight = std::min(value, kLevels - 1 - value) * photograph.exposure_s;
-            sum += weight * curve.y[static_cast<std::size_t>(value)] / photograph.exposure_s;
+            const double weight = std::min(value - kWellDark, kWellBright - value);
+            sum +=
+                weight * std::log(curve.y[static_cast<std::size_t>(value)] / photograph.exposure_s);
             weights += weight;
         }
-        light[k] = weights > 0.0 ? static_cast<float>(sum / weights) : 0.0F;
+        light[k] = weights > 0.0 ? static_cast<float>(std::exp(sum / weights)) : 0.0F;
     }
     return light;
 }

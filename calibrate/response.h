@@ -15,6 +15,7 @@ namespace nearfield::calibrate {
 /// A photograph of a bracket: 8 bits, [row][column][channel], R, G, B or one channel.
 struct Photograph {
     std::vector<std::uint8_t> values;
+    int width_px = 0;
     double exposure_s = 0;  // relative ones do
 };
 
@@ -28,8 +29,10 @@ struct ResponseCurve {
 };
 
 /// Recovers the response of unknown photographs from a bracket, by Debevec and Malik, "Recovering
-/// High Dynamic Range Radiance Maps from Photographs", 1997 (OpenCV's CalibrateDebevec), then made
-/// monotone by pooling neighbors.
+/// High Dynamic Range Radiance Maps from Photographs", 1997 (OpenCV's CalibrateDebevec): six
+/// times from pixels of their own, whose logarithms are averaged, then made monotone by pooling
+/// neighbors. Pixels are taken where the picture is smooth: photographs of a bracket never lie on
+/// each other to the pixel.
 ///
 /// In      is_used: of every pixel; empty: all
 /// Throws  Error for fewer than 3 exposures, photographs of different sizes, or where too few
@@ -38,8 +41,8 @@ ResponseCurve recover_response(std::span<const Photograph> photographs,
                                int channels,
                                const std::vector<char>& is_used);
 
-/// Light of one pixel and channel, relative: mean over exposures, weighed by how well each is
-/// exposed (a tent over the range). 0 where no exposure is.
+/// Light of one pixel and channel, relative: mean of the exposures' logarithms, weighed by how well
+/// each is exposed (a tent over the range). 0 where no exposure is.
 std::vector<float> merged(std::span<const Photograph> photographs,
                           int channels,
                           const ResponseCurve& response);

@@ -11,7 +11,6 @@
 namespace nearfield::calibrate {
 namespace {
 
-constexpr double kVeilSecondsPerMicrosecond = 1e-6;
 // Widths from a hundredth of the picture to half of it: narrower is the lens' own blur, wider is
 // an even constant.
 constexpr int kWidths = 14;
@@ -100,15 +99,15 @@ void add_plane(VeilPlane plane,
     used += dark.size() - 1;
 }
 
-std::vector<float> net_of(const capture::FrameRecord& record,
-                          const DarkResult& dark,
-                          const FrameReader& read) {
+// Above black alone: darks hold what room light the screen sends, which boards do not see, and the
+// regression's constant takes dark current.
+std::vector<float> above_black(const capture::FrameRecord& record,
+                               const DarkResult& dark,
+                               const FrameReader& read) {
     const capture::Frame frame = read(record);
-    const auto t_s = static_cast<float>(record.shot.exposure_us * kVeilSecondsPerMicrosecond);
     std::vector<float> net(frame.values.size());
     for (std::size_t k = 0; k < net.size(); ++k) {
-        net[k] =
-            static_cast<float>(frame.values[k]) - dark.black_dn[k] - dark.dark_dn_per_s[k] * t_s;
+        net[k] = static_cast<float>(frame.values[k]) - dark.black_dn[k];
         if (dark.is_hot[k] != 0.0F && k > 1)
             net[k] = net[k - 1];
     }
@@ -161,11 +160,11 @@ VeilResult fit_round(std::span<const capture::FrameRecord* const> frames,
     std::vector<WidthSums> sums(widths_px.size());
     VeilResult result;
     for (const capture::FrameRecord* record : frames) {
-        const std::vector<float> seen = net_of(*record, dark, read);
+        const std::vector<float> seen = above_black(*record, dark, read);
         const std::vector<float> clear =
             rig::remove_veil(seen, layout.size_px, layout.mosaic,
                              std::clamp(before.share, 0.0, 0.4), before.sigma_px);
-        const double dark_dn = dark.sigma_dn(record->shot.exposure_us * kVeilSecondsPerMicrosecond);
+        const double dark_dn = dark.black_sigma_dn;
         for (int p = 0; p < interleave.planes(); ++p) {
             VeilPlane plane;
             plane.size = interleave.size_px(layout.size_px, p);
