@@ -80,6 +80,9 @@ struct Design {
 ///         behind a filter keeps its quadrature nodes: 1.2 kB a measurement, texel column and row.
 Design make_design(const Slab& planes, const Optics& optics);
 
+/// Numbers of a row that the normal equations take at once.
+constexpr int kSpreadRow = 12;
+
 /// G of one texel: measurement k's entries stand in a rectangle of `height` rows of the basis grid,
 /// `stride` numbers each (a multiple of 4, zeros at the end).
 struct TexelDesign {
@@ -88,6 +91,9 @@ struct TexelDesign {
     int width = 0, height = 0, stride = 0;
     std::vector<int> first;     // [k]: basis function m of the rectangle's first entry
     std::vector<double> value;  // [k][height][stride]
+
+    int wide = 0;                // a row of the grid, rounded up to kSpreadRow
+    std::vector<double> spread;  // [k][height][wide]: the rectangles' rows at their columns
 
     std::size_t block(int k) const {
         return static_cast<std::size_t>(k) * static_cast<std::size_t>(height * stride);

@@ -58,6 +58,7 @@ struct Workspace {
     NormalEquations normal;
     BandMatrix factor;
     std::vector<int> free_index;  // [position in factor]: m
+    std::vector<int> row_end;     // [m]: one past the last row of a column of N
     std::vector<std::size_t> breaches;
     std::vector<double> coeffs_padded, gradient, residual, right_side, lanes;
 };
