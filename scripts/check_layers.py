@@ -17,6 +17,7 @@ ALLOWED = {
     "formats/shared": [],
     "formats/photos": ["formats/files", "formats/capture"],
     "formats/model": ["formats/files", "formats/shared"],
+    "formats/rig": ["formats/files"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
