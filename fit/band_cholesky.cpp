@@ -96,14 +96,21 @@ void finish_rows(BandMatrix& matrix, int j0, int i) {
     at<Rows4>(p + 3 * leading) = x3;
 }
 
+// Zeros where a chunk of rows or a block of columns reaches past a column's last row.
+void clear_beyond(BandMatrix& matrix, int j) {
+    const int begin = j < matrix.size ? matrix.row_end[static_cast<std::size_t>(j)] : j;
+    const int end = block_end(matrix, j / kBlock * kBlock) + kChunk;
+    std::fill(column(matrix, j) + begin, column(matrix, j) + std::min(matrix.leading, end), 0.0);
+}
+
 }  // namespace
 
 void reset(BandMatrix& matrix, int size) {
     matrix.size = size;
     matrix.padded = (size + kBlock - 1) / kBlock * kBlock;
     matrix.leading = matrix.padded + kChunk;
-    matrix.value.assign(
-        static_cast<std::size_t>(matrix.padded) * static_cast<std::size_t>(matrix.leading), 0.0);
+    matrix.value.resize(static_cast<std::size_t>(matrix.padded) *
+                        static_cast<std::size_t>(matrix.leading));
     matrix.inverse_diagonal.resize(static_cast<std::size_t>(matrix.padded));
     matrix.first.resize(static_cast<std::size_t>(matrix.padded));
     matrix.row_end.resize(static_cast<std::size_t>(matrix.padded));
@@ -116,8 +123,11 @@ void reset(BandMatrix& matrix, int size) {
     for (int j = size; j < matrix.padded; ++j) {
         matrix.first[static_cast<std::size_t>(j)] = j;
         matrix.row_end[static_cast<std::size_t>(j)] = j + 1;
-        column(matrix, j)[j] = 1.0;
     }
+    for (int j = 0; j < matrix.padded; ++j)
+        clear_beyond(matrix, j);
+    for (int j = size; j < matrix.padded; ++j)
+        column(matrix, j)[j] = 1.0;
 }
 
 void factorize(BandMatrix& matrix) {

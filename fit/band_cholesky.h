@@ -10,7 +10,7 @@ namespace nearfield::fit {
 struct BandMatrix {
     int size = 0;
     int padded = 0;            // size, and unit rows to whole blocks of columns
-    int leading = 0;           // distance of columns; entries past the matrix are 0
+    int leading = 0;           // distance of columns; room for whole blocks of rows
     std::vector<int> first;    // [padded]
     std::vector<int> row_end;  // [padded]: one past the last row of column j
     std::vector<double> value;
@@ -19,7 +19,9 @@ struct BandMatrix {
     int vector_size() const { return leading; }
 };
 
-/// Makes a matrix of zeros; `first` has been set for `size` rows.
+/// Makes room for a matrix whose `first` has been set for `size` rows. Entries in the band are to
+/// be written by the caller, in whole columns from the diagonal to row_end; zeros that the
+/// factorization reads beyond stand there.
 void reset(BandMatrix& matrix, int size);
 
 /// A pivot that rounding makes smaller than 1e-14 of its diagonal entry is raised to that.

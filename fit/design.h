@@ -80,6 +80,9 @@ struct Design {
 ///         behind a filter keeps its quadrature nodes: 1.2 kB a measurement, texel column and row.
 Design make_design(const Slab& planes, const Optics& optics);
 
+/// Numbers of a row that the normal equations take at once.
+constexpr int kSpreadRow = 12;
+
 /// G of one texel: measurement k's entries stand in a rectangle of `height` rows of the basis grid,
 /// `stride` numbers each (a multiple of 4, zeros at the end).
 struct TexelDesign {
@@ -89,6 +92,9 @@ struct TexelDesign {
     std::vector<int> first;     // [k]: basis function m of the rectangle's first entry
     std::vector<double> value;  // [k][height][stride]
 
+    int wide = 0;                // a row of the grid, rounded up to kSpreadRow
+    std::vector<double> spread;  // [k][height][wide]: the rectangles' rows at their columns
+
     std::size_t block(int k) const {
         return static_cast<std::size_t>(k) * static_cast<std::size_t>(height * stride);
     }
@@ -96,7 +102,8 @@ struct TexelDesign {
 
 /// Writes G of texel (i, j) over what was in `texel`, whose memory is used again. Exact but for
 /// radiance weighting behind a filter: three Gauss nodes a piece there, 1e-5 of the largest entry.
-/// Cost    11 x 9 positions, B-splines: 3 us; radiance weighting behind a filter 60 us.
+/// Cost    11 x 9 positions, B-splines: 6 us; radiance weighting behind a filter takes 324 nodes a
+///         position.
 void fill_texel_design(const Design& design, int i, int j, TexelDesign& texel);
 
 /// G as a matrix, [k][m].

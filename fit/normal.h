@@ -39,8 +39,8 @@ struct NormalEquations {
     }
 };
 
-/// Writes N and its right side over what was there. Rectangles of G are added as they are, row by
-/// row: 25,000 steps of four multiply-adds for 11 x 9 B-splines.
+/// Writes N and its right side over what was there: tiles of N, each summed in registers over all
+/// measurements that reach it.
 void form_normal(const TexelDesign& texel,
                  const Penalty& penalty,
                  std::span<const double> b,
@@ -54,8 +54,15 @@ void set_data(const TexelDesign& texel,
               std::span<const double> weight,
               NormalEquations& normal);
 
-/// Half the gradient of what is minimized, G^T W (G c - b) + lambda D^T Q D c, from G and b, not
-/// from N. `coeffs` and `gradient` have leading entries, `residual` (G c - b) one a measurement.
+/// Half the gradient of what is minimized, N c - G^T W b, from the columns of N down to
+/// row_end[column].
+void fill_gradient(const std::vector<double>& coeffs,
+                   const std::vector<int>& row_end,
+                   const NormalEquations& normal,
+                   std::vector<double>& gradient);
+
+/// The same as G^T W (G c - b) + lambda D^T Q D c, from G and b, not from N. `coeffs` and
+/// `gradient` have leading entries, `residual` (G c - b) one a measurement.
 void fill_gradient(const TexelDesign& texel,
                    const Penalty& penalty,
                    std::span<const double> b,

@@ -16,7 +16,7 @@ struct Conditioning {
     int unseen_count = 0;  // coefficients that no measurement sees
 };
 
-/// Cost    n^3: 5 ms for 99 functions.
+/// Cost    O(n^3): for some texels, not for all.
 Conditioning conditioning(const TexelDesign& texel, std::span<const double> weight);
 
 /// What noise-free data of this basis misses.

@@ -50,7 +50,7 @@ struct RectifyMap {
 /// Weights for one color of a mosaic ("mono", "rggb", "grbg", "gbrg", "bggr"), channel 0, 1, 2 for
 /// R, G, B; "mono" has channel 0 alone.
 /// Throws Error for another mosaic or channel.
-/// Cost    256 x 256 texels: 0.2 s. Parallel over rows of texels (TBB); the projection is called
+/// Cost    O(texels + pixels). Parallel over rows of texels (TBB); the projection is called
 ///         from many threads.
 RectifyMap make_rectify_map(const TexelGrid& grid,
                             glm::ivec2 size_px,

@@ -50,6 +50,17 @@ int band_begin(const Problem& problem, int m) {
     return row < 0 ? 0 : row * columns + std::max(0, m % columns - reach_x);
 }
 
+// One past the last row of each column of N.
+void fill_row_end(const Problem& problem, Workspace& work) {
+    work.row_end.resize(static_cast<std::size_t>(work.normal.size));
+    int end = 0;
+    for (int m = 0; m < work.normal.size; ++m) {
+        while (end < work.normal.size && band_begin(problem, end) <= m)
+            ++end;
+        work.row_end[static_cast<std::size_t>(m)] = end;
+    }
+}
+
 // The free coefficients' part of N.
 void gather_free(const Problem& problem, Workspace& work, const TexelFit& fit) {
     work.free_index.clear();
@@ -90,11 +101,6 @@ void solve_free(const Problem& problem, Workspace& work, TexelFit& fit) {
         work.coeffs_padded[static_cast<std::size_t>(work.free_index[i])] = work.right_side[i];
 }
 
-void update_gradient(const Problem& problem, Workspace& work) {
-    fill_gradient(problem.texel, problem.penalty, problem.b, problem.weight, work.normal,
-                  work.coeffs_padded, work.residual, work.gradient);
-}
-
 // Whether coefficient m breaks a condition of the minimum: free and negative, or at the bound and
 // better off above it.
 bool is_breach(const Workspace& work, const TexelFit& fit, std::size_t m) {
@@ -111,7 +117,7 @@ bool exchange_blocks(const Problem& problem, Workspace& work, TexelFit& fit) {
     std::vector<std::size_t>& breaches = work.breaches;
     for (int patience = kPatience; patience > 0;) {
         solve_free(problem, work, fit);
-        update_gradient(problem, work);
+        fill_gradient(work.coeffs_padded, work.row_end, work.normal, work.gradient);
         breaches.clear();
         for (std::size_t m = 0; m < fit.is_free.size(); ++m)
             if (is_breach(work, fit, m))
@@ -179,7 +185,7 @@ bool exchange_singly(const Problem& problem, Workspace& work, TexelFit& fit) {
         solve_free(problem, work, fit);
         if (!step_feasibly(work, fit, coeffs))
             continue;
-        update_gradient(problem, work);
+        fill_gradient(work.coeffs_padded, work.row_end, work.normal, work.gradient);
         const std::optional<std::size_t> next = steepest(work, fit);
         if (!next)
             return true;
@@ -210,12 +216,13 @@ void minimize(const Problem& problem, Workspace& work, TexelFit& fit) {
         if (work.normal.norm[m] == 0.0)
             fit.is_free[m] = 0;
     fit.factorizations = 0;
+    fill_row_end(problem, work);
 
     fit.has_converged = exchange_blocks(problem, work, fit) || exchange_singly(problem, work, fit);
     for (double& c : work.coeffs_padded)
         c = std::max(c, 0.0);
-    if (!fit.has_converged)
-        update_gradient(problem, work);
+    fill_gradient(problem.texel, problem.penalty, problem.b, problem.weight, work.normal,
+                  work.coeffs_padded, work.residual, work.gradient);
 
     fit.coeffs.assign(work.coeffs_padded.begin(),
                       work.coeffs_padded.begin() + static_cast<std::ptrdiff_t>(n));

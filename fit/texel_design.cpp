@@ -65,6 +65,23 @@ void fill_quadrature(const Design& design, RunPair run, glm::dvec2 s_m, int stri
     }
 }
 
+// The rectangles' rows again, at their places in whole rows of the grid.
+void spread_rows(TexelDesign& texel) {
+    const int columns = texel.grid.x;
+    texel.wide = (columns + kSpreadRow - 1) / kSpreadRow * kSpreadRow;
+    texel.spread.assign(static_cast<std::size_t>(texel.measurement_count * texel.height) *
+                            static_cast<std::size_t>(texel.wide),
+                        0.0);
+    double* to = texel.spread.data();
+    const double* from = texel.value.data();
+    for (int k = 0; k < texel.measurement_count; ++k) {
+        const int column = texel.first[static_cast<std::size_t>(k)] % columns;
+        for (int row = 0; row < texel.height; ++row, to += texel.wide, from += texel.stride)
+            for (int a = 0; a < texel.width; ++a)
+                to[column + a] = from[a];
+    }
+}
+
 }  // namespace
 
 bool Design::is_varying() const {
@@ -95,6 +112,7 @@ void fill_texel_design(const Design& design, int i, int j, TexelDesign& texel) {
                          entry_scale(design, {design.x.u_m[run.x], design.y.u_m[run.y]}, s_m),
                          texel.stride, block);
     }
+    spread_rows(texel);
 }
 
 std::vector<double> dense(const TexelDesign& texel) {
