@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLuminaireName = "lamp.luminaire.exr";
-constexpr double kModelErrorRel = fit::CaptureFitOptions{}.model_error_rel;
+const double kModelErrorRel = fit::CaptureFitOptions{}.model_error_rel;
 
 std::string in_folder(const LabDemoOptions& options, const std::string& name) {
     return (fs::path(options.folder) / name).string();
