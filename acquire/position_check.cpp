@@ -78,8 +78,6 @@ double PositionCheck::black_dn(double exposure_us) const {
 }
 
 void PositionCheck::finish_position() {
-    if (position_.empty())
-        return;
     std::vector<Signal> bracket;
     std::vector<int> numbers;
     for (const Kept& kept : position_) {
