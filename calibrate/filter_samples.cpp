@@ -19,7 +19,8 @@ constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 
 glm::dvec2 pixel_center(std::size_t k, glm::ivec2 size_px) {
     const auto width = static_cast<std::size_t>(size_px.x);
-    return {static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5};
+    const std::size_t column = k % width, row = k / width;
+    return {static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5};
 }
 
 std::string view_name(const FilterPicture& picture) {

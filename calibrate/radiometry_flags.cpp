@@ -114,7 +114,8 @@ void flag_scale(RadiometryResult& result) {
         flag(result,
              fmt::format("photometer and camera do not agree: chi-square {:.0f} of {}", scale.chi2,
                          scale.freedom),
-             "check where the photometer lies, and its noise in the plan");
+             "check where the photometer lies, and its noise in the plan; a camera that sees "
+             "other colors than the eye disagrees as well where the lamp's color changes");
     if (scale.offset_lx < -kChi2Sigmas * scale.offset_sigma_lx)
         flag(result, fmt::format("the photometer reads {:.3g} lx without light", scale.offset_lx),
              "set the photometer's zero");
