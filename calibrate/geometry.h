@@ -44,6 +44,9 @@ struct ViewResult {
     std::string name;
     capture::TargetPlane plane = capture::TargetPlane::Free;
     Rigid camera_from_board;
+    /// Sigmas of the pose's numbers. Free: angle-axis (rad) and shift (m) of camera_from_board; on
+    /// a plane: x, y (m) and turn (rad) in it.
+    std::vector<double> pose_sigma;
     double rms_px = 0;  // of the residuals' length, outliers left out
     std::vector<CornerResidual> corners;
 };

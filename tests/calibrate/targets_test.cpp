@@ -71,17 +71,17 @@ CornerErrors errors_on(const std::string& name, const std::string& mosaic) {
 
 TEST(Targets, CornersOfTheNearBenchAreFound) {
     const CornerErrors errors = errors_on("bench_near.json", "mono");
-    EXPECT_GE(errors.found, 0.95 * errors.visible);
-    EXPECT_LT(errors.rms_px(), 0.08);
-    EXPECT_LT(errors.worst_px, 0.5);
+    EXPECT_GE(errors.found, 0.98 * errors.visible);
+    EXPECT_LT(errors.rms_px(), 0.045);
+    EXPECT_LT(errors.worst_px, 0.2);
     EXPECT_LT(glm::length(errors.mean_px()), 0.01);  // half a pixel wrong: 0.7
 }
 
 TEST(Targets, CornersOfTheFarBenchAreFoundThroughItsMosaic) {
     const CornerErrors errors = errors_on("bench_far.json", "rggb");
-    EXPECT_GE(errors.found, 0.95 * errors.visible);
-    EXPECT_LT(errors.rms_px(), 0.12);
-    EXPECT_LT(errors.worst_px, 0.6);
+    EXPECT_GE(errors.found, 0.98 * errors.visible);
+    EXPECT_LT(errors.rms_px(), 0.045);
+    EXPECT_LT(errors.worst_px, 0.2);
     EXPECT_LT(glm::length(errors.mean_px()), 0.02);
 }
 
