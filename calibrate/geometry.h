@@ -141,7 +141,7 @@ struct Geometry {
 ///         are all parallel, no board on S or on U, filter centers that do not span the grid,
 ///         positions beyond the picture.
 /// Cost    20 views of 35 corners, with validation: some 0.2 s. 100 views of 500 corners without
-///         it: docs/calibration.md. Parallel (TBB) in the validation alone.
+///         it: docs/calibration_geometry.md. Parallel (TBB) in the validation alone.
 /// Source  Zhang, "A flexible new technique for camera calibration", 2000; Triggs et al., "Bundle
 ///         adjustment, a modern synthesis", 2000; projection uncertainty after Kogan's mrcal.
 Geometry calibrate_geometry(const Observations& observations, const GeometryOptions& options);

@@ -131,7 +131,7 @@ std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::Boar
     for (cv::Point2f& corner : found)
         corner -= cv::Point2f(0.5F, 0.5F);
     // A corner beside one marker alone may be two pixels off: a larger window first. Windows and
-    // blur as measured on boards whose corners are known (docs/calibration.md).
+    // blur as measured on boards whose corners are known (docs/calibration_geometry.md).
     constexpr int kLeastHalf_px = 2, kMostHalf_px = 7;
     constexpr double kBlur_px = 0.7;
     cv::Mat smooth;
