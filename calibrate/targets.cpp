@@ -80,7 +80,8 @@ struct Markers {
 // Small pictures are enlarged first: bits of a marker need some pixels each.
 Markers find_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
     constexpr double kGoodWidth_px = 1500.0;
-    const int factor = std::clamp(static_cast<int>(kGoodWidth_px / picture.cols + 0.5), 1, 3);
+    const int factor =
+        std::clamp(static_cast<int>(std::lround(kGoodWidth_px / picture.cols)), 1, 3);
     cv::Mat larger = picture;
     if (factor > 1)
         cv::resize(picture, larger, {}, factor, factor, cv::INTER_CUBIC);
