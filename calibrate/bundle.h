@@ -96,7 +96,7 @@ rig::Lens lens_of(const Bundle& bundle);
 /// are not estimated have zeros. None where the views do not determine everything.
 struct SharedCovariance {
     Eigen::MatrixXd matrix;
-    int parameter_count = 0;  // of all that was estimated, poses too
+    std::vector<Eigen::MatrixXd> poses;  // [view]: of BoardPose's numbers; empty where none count
 };
 std::optional<SharedCovariance> shared_covariance(Bundle& bundle,
                                                   const Observations& observations,

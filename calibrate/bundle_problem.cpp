@@ -91,8 +91,10 @@ void add_residuals(Bundle& bundle,
             add_corner<kModel>(bundle, view, corners[i], weights.corner_sigma_px, to);
             is_seen = true;
         }
-        if (is_seen)
+        if (is_seen) {
             to.boards.push_back(bundle.boards[view].numbers.data());
+            to.views.push_back(view);
+        }
     }
     if (!bundle.has_planes)
         return;
@@ -144,7 +146,9 @@ BundleProblem make_problem(Bundle& bundle,
     ceres::Problem::Options options;
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.disable_all_safety_checks = true;
-    BundleProblem made{loss_of(choice), std::make_unique<ceres::Problem>(options), {}};
+    BundleProblem made;
+    made.loss = loss_of(choice);
+    made.problem = std::make_unique<ceres::Problem>(options);
     switch (bundle.model) {
         case rig::LensModel::Brown5:
             add_residuals<rig::LensModel::Brown5>(bundle, observations, weights, made);

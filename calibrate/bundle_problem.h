@@ -5,6 +5,7 @@
 
 #include <ceres/ceres.h>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace nearfield::calibrate {
 struct BundleProblem {
     std::unique_ptr<ceres::LossFunction> loss;
     std::unique_ptr<ceres::Problem> problem;
-    std::vector<double*> boards;  // poses that have residuals
+    std::vector<double*> boards;     // poses that have residuals
+    std::vector<std::size_t> views;  // theirs
 };
 
 BundleProblem make_problem(Bundle& bundle,

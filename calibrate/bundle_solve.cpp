@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace nearfield::calibrate {
 namespace {
@@ -66,35 +68,60 @@ Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& rows) {
     return factors.matrixQR().topRows(count).triangularView<Eigen::Upper>();
 }
 
-// What the rows say of the shared numbers once each board's pose is eliminated: orthogonally, so
-// that no digits are lost to squares.
-Eigen::MatrixXd shared_rows(const ceres::CRSMatrix& jacobian, const Columns& columns) {
+// Rows of the Jacobian by the board whose pose they depend on; the last: none.
+std::vector<std::vector<int>> rows_by_board(const ceres::CRSMatrix& jacobian,
+                                            const Columns& columns) {
     const std::size_t boards = columns.board_begin.size() - 1;
-    std::vector<std::vector<int>> rows(boards + 1);  // the last: of no board
+    std::vector<std::vector<int>> rows(boards + 1);
     for (int row = 0; row < jacobian.num_rows; ++row) {
-        const int last =
-            jacobian
-                .cols[static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]) -
-                      1];
-        const auto end =
+        const auto end = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]);
+        const int last = jacobian.cols[end - 1];
+        const auto next =
             std::upper_bound(columns.board_begin.begin(), columns.board_begin.end(), last);
-        const auto board = static_cast<std::size_t>(end - columns.board_begin.begin());
+        const auto board = static_cast<std::size_t>(next - columns.board_begin.begin());
         rows[board == 0 ? boards : board - 1].push_back(row);
     }
-    Eigen::MatrixXd stacked(0, columns.shared);
+    return rows;
+}
+
+// The Jacobian once each board's pose is eliminated: orthogonally, so that no digits are lost to
+// squares.
+struct Eliminated {
+    Eigen::MatrixXd shared;              // what is left: of the shared numbers alone
+    std::vector<Eigen::MatrixXd> poses;  // [board]: rows [triangle of its pose | shared]
+};
+
+Eliminated eliminate_poses(const ceres::CRSMatrix& jacobian, const Columns& columns) {
+    const std::vector<std::vector<int>> rows = rows_by_board(jacobian, columns);
+    const std::size_t boards = rows.size() - 1;
+    Eliminated eliminated{Eigen::MatrixXd(0, columns.shared), {}};
     for (std::size_t board = 0; board <= boards; ++board) {
-        if (rows[board].empty())
-            continue;
         const int begin = board < boards ? columns.board_begin[board] : columns.shared;
         const int pose = board < boards ? columns.board_begin[board + 1] - begin : 0;
-        const Eigen::MatrixXd triangle =
-            triangle_of(rows_of(jacobian, rows[board], columns.shared, begin, pose));
-        const Eigen::Index left = std::max<Eigen::Index>(triangle.rows() - pose, 0);
-        Eigen::MatrixXd longer(stacked.rows() + left, columns.shared);
-        longer << stacked, triangle.bottomRightCorner(left, columns.shared);
-        stacked = triangle_of(longer);
+        const Eigen::MatrixXd dense = rows_of(jacobian, rows[board], columns.shared, begin, pose);
+        const Eigen::MatrixXd triangle = dense.rows() > 0 ? triangle_of(dense) : dense;
+        const Eigen::Index top = std::min<Eigen::Index>(pose, triangle.rows());
+        const Eigen::Index left = triangle.rows() - top;
+        if (board < boards)
+            eliminated.poses.emplace_back(triangle.topRows(top));
+        if (left == 0)
+            continue;
+        Eigen::MatrixXd longer(eliminated.shared.rows() + left, columns.shared);
+        longer << eliminated.shared, triangle.bottomRightCorner(left, columns.shared);
+        eliminated.shared = triangle_of(longer);
     }
-    return stacked;
+    return eliminated;
+}
+
+// A pose follows the shared numbers, and has noise of its own.
+Eigen::MatrixXd pose_covariance(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& shared) {
+    const Eigen::Index pose = rows.cols() - shared.cols();
+    if (rows.rows() < pose)
+        return Eigen::MatrixXd::Constant(pose, pose, std::numeric_limits<double>::infinity());
+    const auto triangle = rows.leftCols(pose).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd own = triangle.solve(Eigen::MatrixXd::Identity(pose, pose));
+    const Eigen::MatrixXd follows = triangle.solve(Eigen::MatrixXd(rows.rightCols(shared.cols())));
+    return own * own.transpose() + follows * shared * follows.transpose();
 }
 
 // (J^T J)^-1; none where J's columns are dependent to rounding.
@@ -171,9 +198,13 @@ std::optional<SharedCovariance> shared_covariance(Bundle& bundle,
     for (const double* board : made.boards)
         columns.board_begin.push_back(columns.board_begin.back() +
                                       made.problem->ParameterBlockSize(board));
-    const auto inverse = inverse_square(shared_rows(jacobian, columns));
+    const Eliminated eliminated = eliminate_poses(jacobian, columns);
+    const auto inverse = inverse_square(eliminated.shared);
     if (!inverse)
         return std::nullopt;
+    std::vector<Eigen::MatrixXd> poses(bundle.boards.size());
+    for (std::size_t board = 0; board < made.boards.size(); ++board)
+        poses[made.views[board]] = pose_covariance(eliminated.poses[board], *inverse);
     Eigen::MatrixXd expand = Eigen::MatrixXd::Zero(ambient, estimated);
     Eigen::Index row = 0, column = 0;
     for (const Eigen::MatrixXd& part : tangents) {
@@ -181,7 +212,7 @@ std::optional<SharedCovariance> shared_covariance(Bundle& bundle,
         row += part.rows();
         column += part.cols();
     }
-    return SharedCovariance{expand * *inverse * expand.transpose(), jacobian.num_cols};
+    return SharedCovariance{expand * *inverse * expand.transpose(), std::move(poses)};
 }
 
 }  // namespace nearfield::calibrate

@@ -123,11 +123,17 @@ SharedCovariance known_lens(Fitted& fitted,
     return *covariance;
 }
 
-void fill_views(const Fitted& fitted, const Observations& observations, Geometry& geometry) {
+void fill_views(const Fitted& fitted,
+                const Observations& observations,
+                const SharedCovariance& covariance,
+                Geometry& geometry) {
     for (std::size_t view = 0; view < observations.boards.size(); ++view) {
         const BoardView& board = observations.boards[view];
         ViewResult result{
-            board.view, board.name, board.plane, camera_from_board(fitted.bundle, view), 0.0, {}};
+            board.view, board.name, board.plane, camera_from_board(fitted.bundle, view),
+            {},         0.0,        {}};
+        for (const double variance : covariance.poses[view].diagonal())
+            result.pose_sigma.push_back(std::sqrt(variance));
         double sum = 0.0;
         int used = 0;
         for (std::size_t i = 0; i < board.corners.size(); ++i) {
@@ -261,7 +267,7 @@ Geometry calibrate_geometry(const Observations& observations, const GeometryOpti
         geometry.planes = planes_result(fitted, usable, covariance.matrix);
     }
     geometry.lens = lens_of(fitted.bundle);
-    fill_views(fitted, usable, geometry);
+    fill_views(fitted, usable, covariance, geometry);
     fill_parameters(fitted, covariance.matrix, geometry);
     const auto numbers = static_cast<Eigen::Index>(fitted.bundle.lens.size());
     geometry.uncertainty = uncertainty_map(

@@ -44,6 +44,9 @@ struct ViewResult {
     std::string name;
     capture::TargetPlane plane = capture::TargetPlane::Free;
     Rigid camera_from_board;
+    /// Sigmas of the pose's numbers. Free: angle-axis (rad) and shift (m) of camera_from_board; on
+    /// a plane: x, y (m) and turn (rad) in it.
+    std::vector<double> pose_sigma;
     double rms_px = 0;  // of the residuals' length, outliers left out
     std::vector<CornerResidual> corners;
 };
@@ -145,7 +148,7 @@ struct Geometry {
 ///         are all parallel, no board on S or on U, filter centers that do not span the grid,
 ///         positions beyond the picture.
 /// Cost    20 views of 35 corners, with validation: some 0.2 s. 100 views of 500 corners without
-///         it: docs/calibration.md. Parallel (TBB) in the validation alone.
+///         it: docs/calibration_geometry.md. Parallel (TBB) in the validation alone.
 /// Source  Zhang, "A flexible new technique for camera calibration", 2000; Triggs et al., "Bundle
 ///         adjustment, a modern synthesis", 2000; projection uncertainty after Kogan's mrcal.
 Geometry calibrate_geometry(const Observations& observations, const GeometryOptions& options);

@@ -80,7 +80,8 @@ struct Markers {
 // Small pictures are enlarged first: bits of a marker need some pixels each.
 Markers find_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
     constexpr double kGoodWidth_px = 1500.0;
-    const int factor = std::clamp(static_cast<int>(kGoodWidth_px / picture.cols + 0.5), 1, 3);
+    const int factor =
+        std::clamp(static_cast<int>(std::lround(kGoodWidth_px / picture.cols)), 1, 3);
     cv::Mat larger = picture;
     if (factor > 1)
         cv::resize(picture, larger, {}, factor, factor, cv::INTER_CUBIC);
@@ -131,7 +132,7 @@ std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::Boar
     for (cv::Point2f& corner : found)
         corner -= cv::Point2f(0.5F, 0.5F);
     // A corner beside one marker alone may be two pixels off: a larger window first. Windows and
-    // blur as measured on boards whose corners are known (docs/calibration.md).
+    // blur as measured on boards whose corners are known (docs/calibration_geometry.md).
     constexpr int kLeastHalf_px = 2, kMostHalf_px = 7;
     constexpr double kBlur_px = 0.7;
     cv::Mat smooth;

@@ -23,7 +23,7 @@ struct Point {
 /// k5 k6].
 template <typename T>
 T brown_radial(LensModel model, const T* k, const T& r2) {
-    const T above = T(1.0) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+    T above = T(1.0) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
     if (model == LensModel::Brown5)
         return above;
     return above / (T(1.0) + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));

@@ -60,6 +60,34 @@ TEST(Coverage, OneSigmaHoldsTwoThirdsOfCalibrations) {
     EXPECT_LT(time_s / kRuns, 0.5);
 }
 
+TEST(Coverage, PosesLieWithinTheirSigmas) {
+    const test::SimulatedBench truth = test::simulated_bench(rig::LensModel::Brown5, 10, 0.0);
+    GeometryOptions options;
+    options.with_validation = false;
+    std::vector<Geometry> found(kRuns / 2);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t run) {
+        found[run] = calibrate_geometry(test::observed(truth, {9000 + run, 0.05, 0.02}), options);
+    });
+    std::size_t within = 0, count = 0;
+    for (const Geometry& geometry : found) {
+        for (const ViewResult& view : geometry.views) {
+            if (view.plane != capture::TargetPlane::Free)
+                continue;
+            const Rigid& pose = truth.camera_from_board[static_cast<std::size_t>(view.view)];
+            const glm::dvec3 off = view.camera_from_board.translation_m - pose.translation_m;
+            for (int axis = 0; axis < 3; ++axis) {
+                within += std::abs(off[axis]) < view.pose_sigma[3 + static_cast<std::size_t>(axis)];
+                ++count;
+            }
+        }
+    }
+    const double share = double(within) / double(count);
+    std::cout << "places of boards: " << 100.0 * share << " % of " << count << "\n";
+    // Those of one run rise and fall together, by the lens: as good as some hundreds.
+    EXPECT_GE(share, 0.60);
+    EXPECT_LE(share, 0.76);
+}
+
 // The uncertainty map says how far the lens' pictures of far points lie from the true ones, turned.
 TEST(Coverage, UncertaintyMapPredictsTheSpreadOfProjections) {
     const test::SimulatedBench truth = test::simulated_bench(rig::LensModel::Brown5, 10, 0.0);

@@ -39,7 +39,9 @@ double opencv_rms_px(const Observations& seen) {
 }  // namespace
 
 int main() {
-    using namespace nearfield;
+    namespace calibrate = nearfield::calibrate;
+    namespace rig = nearfield::rig;
+    namespace test = nearfield::test;
     test::SimulatedBench bench = test::simulated_bench(rig::LensModel::Brown5, 96, 0.0);
     bench.squares = {26, 21};
     bench.square_m = 0.009;

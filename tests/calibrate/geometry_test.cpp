@@ -113,7 +113,7 @@ TEST(Geometry, SeenPositionsAreKnownBetter) {
     options.with_validation = false;
     const Geometry found = calibrate_geometry(test::observed(truth, {5, 0.03, 0.01}), options);
     const PlanesResult& planes = *found.planes;
-    EXPECT_LT(planes.position_sigma_m[0], 0.7 * planes.step_sigma_m);
+    EXPECT_LT(planes.position_sigma_m[0], 0.4 * planes.step_sigma_m);
     EXPECT_GT(planes.position_sigma_m[1], planes.step_sigma_m);
     ASSERT_EQ(planes.filters.size(), 9U);
     for (const FilterResult& filter : planes.filters) {

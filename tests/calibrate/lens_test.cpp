@@ -99,6 +99,7 @@ TEST(Lens, NoRayBehindTheFold) {
     lens.distortion = {-0.8, 0.25, 0, 0, 0};
     EXPECT_TRUE(ray_camera(lens, {400.0, 0.0}));
     EXPECT_FALSE(ray_camera(lens, {900.0, 0.0}));
+    EXPECT_FALSE(ray_camera(lens, {2000.0, 0.0}));
 }
 
 }  // namespace

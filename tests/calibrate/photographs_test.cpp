@@ -20,7 +20,8 @@ namespace {
 
 // NEARFIELD_SHARED_DATA: a folder with capture/chessboard and capture/aruco_photos.
 std::filesystem::path photographs(const std::string& name) {
-    const char* folder = std::getenv("NEARFIELD_SHARED_DATA");
+    const char* folder =
+        std::getenv("NEARFIELD_SHARED_DATA");  // NOLINT(concurrency-mt-unsafe): nobody sets it
     return std::filesystem::path(folder != nullptr ? folder : "/work/shared/data") / "capture" /
            name;
 }
