@@ -36,6 +36,10 @@ double* column(BandMatrix& matrix, int j) {
     return &matrix.value[static_cast<std::size_t>(j) * static_cast<std::size_t>(matrix.leading)];
 }
 
+double* lanes_of(double* x, int row) {
+    return x + static_cast<std::ptrdiff_t>(row) * kLanes;
+}
+
 // One past the last row that any of four columns reaches, the block itself at least.
 int block_end(const BandMatrix& matrix, int j0) {
     return std::max(matrix.row_end[static_cast<std::size_t>(j0 + kBlock - 1)], j0 + kBlock);
@@ -184,20 +188,20 @@ void solve_lower(const BandMatrix& factor, double* x) {
     for (int j = 0; j < factor.size; ++j) {
         const double* l = column(factor, j);
         const Lanes pivot =
-            at<Lanes>(x + j * kLanes) * factor.inverse_diagonal[static_cast<std::size_t>(j)];
-        at<Lanes>(x + j * kLanes) = pivot;
+            at<Lanes>(lanes_of(x, j)) * factor.inverse_diagonal[static_cast<std::size_t>(j)];
+        at<Lanes>(lanes_of(x, j)) = pivot;
         for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
-            at<Lanes>(x + i * kLanes) -= pivot * l[i];
+            at<Lanes>(lanes_of(x, i)) -= pivot * l[i];
     }
 }
 
 void solve_upper(const BandMatrix& factor, double* x) {
     for (int j = factor.size - 1; j >= 0; --j) {
         const double* l = column(factor, j);
-        Lanes sum = at<Lanes>(x + j * kLanes);
+        Lanes sum = at<Lanes>(lanes_of(x, j));
         for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
-            sum -= at<Lanes>(x + i * kLanes) * l[i];
-        at<Lanes>(x + j * kLanes) = sum * factor.inverse_diagonal[static_cast<std::size_t>(j)];
+            sum -= at<Lanes>(lanes_of(x, i)) * l[i];
+        at<Lanes>(lanes_of(x, j)) = sum * factor.inverse_diagonal[static_cast<std::size_t>(j)];
     }
 }
 

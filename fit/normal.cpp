@@ -57,7 +57,7 @@ void write_tile(const std::vector<RowPair>& pairs,
                 int width,
                 glm::ivec2 begin,
                 double* to,
-                int leading,
+                std::ptrdiff_t leading,
                 int count) {
     TileColumn sum0, sum1, sum2, sum3;
     for (const RowPair& pair : pairs) {
@@ -116,18 +116,18 @@ double dot_block(const TexelDesign& texel, int k, const double* coeffs) {
     const double* block = &texel.value[texel.block(k)];
     const double* c = coeffs + texel.first[static_cast<std::size_t>(k)];
     Four sum = Four::Zero();
-    for (int row = 0; row < texel.height; ++row)
+    for (int row = 0; row < texel.height; ++row, block += texel.stride, c += texel.grid.x)
         for (int v = 0; v < texel.stride; v += kVector)
-            sum += four(block + row * texel.stride + v) * four(c + row * texel.grid.x + v);
+            sum += four(block + v) * four(c + v);
     return sum.sum();
 }
 
 void add_block(const TexelDesign& texel, int k, double factor, double* gradient) {
     const double* block = &texel.value[texel.block(k)];
     double* g = gradient + texel.first[static_cast<std::size_t>(k)];
-    for (int row = 0; row < texel.height; ++row)
+    for (int row = 0; row < texel.height; ++row, block += texel.stride, g += texel.grid.x)
         for (int v = 0; v < texel.stride; v += kVector)
-            four(g + row * texel.grid.x + v) += four(block + row * texel.stride + v) * factor;
+            four(g + v) += four(block + v) * factor;
 }
 
 // Differences' weights: lambda times the harmonic mean of what the data alone say about their

@@ -34,9 +34,9 @@ struct RunPair {
 void fill_product(const Design& design, RunPair run, double scale, int stride, double* block) {
     const double* x = &design.x.value[run.x * static_cast<std::size_t>(design.x.width)];
     const double* y = &design.y.value[run.y * static_cast<std::size_t>(design.y.width)];
-    for (int b = 0; b < design.y.width; ++b)
+    for (int b = 0; b < design.y.width; ++b, block += stride)
         for (int a = 0; a < design.x.width; ++a)
-            block[b * stride + a] = scale * y[b] * x[a];
+            block[a] = scale * y[b] * x[a];
 }
 
 // Sum over nodes of cos^4 / delta^2 times both axes' weights: first along x, then along y.
