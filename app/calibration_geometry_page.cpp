@@ -151,7 +151,7 @@ Section knowledge_section(const Geometry& geometry) {
             "{:.0f} +- {:.0f} um along a diagonal, {:.0f} +- {:.0f} um down; {:.1f} sigma from "
             "flat.{}",
             bend_um.x, sigma_um.x, bend_um.y, sigma_um.y, bend_um.z, sigma_um.z,
-            geometry.bend->significance_sigma,
+            std::max(0.0, geometry.bend->significance_sigma),
             geometry.bend->significance_sigma > 4
                 ? " The board is bent: calibrate with --bent-board, or use a stiffer one."
                 : ""));

@@ -35,7 +35,7 @@ Provenance provenance_of(const CalibrateCommand& command, const calibrate::Calib
         {"bent-board", command.bent_board ? "true" : "false"},
         {"square-pixels", geometry.has_square_pixels ? "true" : "false"},
         {"outlier-sigmas", number(geometry.outlier_sigmas)}};
-    if (const auto black_dn = command.options.radiometry.assumed_black_dn)
+    if (const auto black_dn = command.options.assumed_black_dn)
         provenance.options.emplace_back("assume-black-dn", number(*black_dn));
     provenance.inputs = {describe_input(command.capture + "/capture.json"),
                          describe_input(command.capture + "/log.jsonl")};
@@ -132,8 +132,8 @@ void add_calibrate(CLI::App& app) {
     sub->add_flag("--lens-only", c->lens_only, "the camera alone, not the planes S and U");
     add_number(*sub, "--outlier-sigmas", geometry.outlier_sigmas, 2.0, 1000.0, "N",
                "corners further off are named and left out");
-    add_number(*sub, "--assume-black-dn", c->options.radiometry.assumed_black_dn, 0.0, 65535.0,
-               "DN", "without darks: this black level and no dark current");
+    add_number(*sub, "--assume-black-dn", c->options.assumed_black_dn, 0.0, 65535.0, "DN",
+               "without darks: this black level and no dark current");
     sub->callback([c] { run_calibrate(*c); });
 }
 

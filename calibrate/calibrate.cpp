@@ -10,9 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <utility>
 
 namespace nearfield::calibrate {
 namespace {
@@ -34,20 +32,6 @@ bool tells_radiometry(const capture::Capture& capture) {
 bool has_view_on(const Observations& observations, TargetPlane plane) {
     return std::any_of(observations.boards.begin(), observations.boards.end(),
                        [&](const BoardView& view) { return view.plane == plane; });
-}
-
-std::vector<ExposureGroup> filter_groups(const capture::Capture& capture) {
-    std::map<std::pair<int, int>, ExposureGroup> by_place;
-    for (const auto& [number, frame] : capture.frames)
-        if (frame.shot.kind == ShotKind::Filter) {
-            ExposureGroup& group = by_place[{frame.shot.position.y, frame.shot.position.x}];
-            group.exposure_us = frame.shot.exposure_us;
-            group.frames.push_back(&frame);
-        }
-    std::vector<ExposureGroup> groups;
-    for (auto& [place, group] : by_place)
-        groups.push_back(std::move(group));
-    return groups;
 }
 
 Observations observe(const std::string& folder,
@@ -79,7 +63,7 @@ void measure_filters(const capture::Capture& capture,
                      const FrameReader& read,
                      Observations& observations,
                      RadiometryResult& radiometry) {
-    const std::vector<ExposureGroup> groups = filter_groups(capture);
+    const std::vector<ExposureGroup> groups = sorted_frames(capture).filters;
     if (groups.empty())
         return;
     GeometryOptions lens_alone = geometry_options;
@@ -138,17 +122,6 @@ std::optional<PhotometerPlace> photometer_place(const capture::Plan& plan,
     return place;
 }
 
-// What the plan knows of the lab's parts.
-RadiometryOptions with_plan(RadiometryOptions options, const capture::Plan& plan) {
-    options.rgb_from_raw = plan.camera.rgb_from_raw;
-    for (const double angle_deg : plan.screen.angle_deg)
-        options.screen.x.push_back(angle_deg * std::numbers::pi / 180.0);
-    options.screen.y = plan.screen.factor;
-    if (plan.photometer)
-        options.photometer_mismatch_rel = plan.photometer->mismatch_rel;
-    return options;
-}
-
 void flag_geometry(const Geometry& geometry, std::vector<Flag>& flags) {
     for (const UnusedView& view : geometry.unused)
         flags.push_back({fmt::format("{} is not used: {}", view.name, view.why),
@@ -201,7 +174,8 @@ Calibration calibrate_capture(const std::string& folder,
                     fmt::format("{} frames of other kinds", capture.frames.size())};
     const FrameReader read = reader_of(folder);
     const capture::Plan plan = capture.header.plan.value_or(capture::Plan{});
-    const RadiometryOptions radiometry_options = with_plan(options.radiometry, plan);
+    RadiometryOptions radiometry_options = options_from(plan);
+    radiometry_options.assumed_black_dn = options.assumed_black_dn;
     Calibration calibration;
     Observations observations;
     if (has_boards) {

@@ -16,7 +16,7 @@ namespace nearfield::calibrate {
 
 struct CalibrationOptions {
     GeometryOptions geometry;
-    RadiometryOptions radiometry;
+    std::optional<double> assumed_black_dn;  // without darks: this level, no dark current
     std::function<void(const std::string& step, double fraction)> progress;
 };
 
