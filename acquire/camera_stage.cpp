@@ -11,6 +11,22 @@ namespace {
 using capture::Shot;
 using capture::ShotKind;
 
+const char* subject_of(ShotKind kind) {
+    switch (kind) {
+        case ShotKind::Target:
+            return "Target";
+        case ShotKind::Flat:
+            return "Flat";
+        case ShotKind::Filter:
+            return "Filter";
+        case ShotKind::Dark:
+        case ShotKind::Light:
+        case ShotKind::Reference:
+            break;
+    }
+    return "Position";
+}
+
 class CameraStage : public Stage {
   public:
     explicit CameraStage(std::shared_ptr<Device> device)
@@ -57,12 +73,9 @@ void CameraStage::arrange(const Shot& shot, const ShouldStop& should_stop) {
         set("LabFilterX", shot.position.x);
         set("LabFilterY", shot.position.y);
     }
-    if (shot.kind == ShotKind::Target) {
+    if (shot.view >= 0)
         set("LabTargetView", shot.view);
-        show("Target");
-    } else {
-        show(shot.kind == ShotKind::Flat ? "Flat" : "Position");
-    }
+    show(subject_of(shot.kind));
     if (counts_shots_)
         set("LabShot", shot.number + 1);
 }

@@ -171,8 +171,21 @@ capture::FrameRecord record_of(const Import& import, int number, bool is_light) 
     return record;
 }
 
-capture::CaptureHeader header_of(const Survey& survey) {
+// A plan whose shots are the photographs: views of the board, by hand, and nothing else.
+capture::Plan views_plan(const Survey& survey, const capture::BoardPlan& board) {
+    capture::Plan plan;
+    plan.board = board;
+    plan.views.assign(survey.imports.size(), capture::TargetPlane::Free);
+    if (!differ(survey.imports, [](const Import& import) { return import.exposure_us; }))
+        plan.target_exposure_us = survey.imports.front().exposure_us.value_or(0);
+    plan.darks = 0;
+    return plan;
+}
+
+capture::CaptureHeader header_of(const Survey& survey, const ImportOptions& options) {
     capture::CaptureHeader header;
+    if (options.board)
+        header.plan = views_plan(survey, *options.board);
     header.response = survey.is_linear ? capture::Response::Linear : capture::Response::Unknown;
     header.provenance.program = program_version();
     header.provenance.command = "capture";
@@ -230,12 +243,13 @@ int border_pixels(const Frame& frame) {
 
 ImportResult import_photos(const std::string& photo_folder,
                            const std::string& capture_folder,
+                           const ImportOptions& options,
                            const std::function<void(double fraction)>& progress) {
     const Survey survey = survey_of(photo_folder, progress);
-    ImportResult result{static_cast<int>(survey.imports.size()), is_bracket(survey.imports),
-                        survey.remarks};
+    ImportResult result{static_cast<int>(survey.imports.size()),
+                        !options.board && is_bracket(survey.imports), survey.remarks};
     capture::CaptureWriter writer =
-        capture::CaptureWriter::create(capture_folder, header_of(survey));
+        capture::CaptureWriter::create(capture_folder, header_of(survey, options));
     writer.add(capture::SessionRecord{
         1, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), program_version(),
         survey.make, survey.model, "", 0});

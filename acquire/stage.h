@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace nearfield::acquire {
 
@@ -30,7 +31,8 @@ class Stage {
 /// Asks a person. `ask` shows a request and returns when it is done; throws Stopped.
 using Ask = std::function<void(const std::string& request, const ShouldStop& should_stop)>;
 
-/// A person moves: asked whenever something other than before must stand on the bench.
-std::unique_ptr<Stage> manual_stage(Ask ask);
+/// A person moves: asked whenever something other than before must stand on the bench. `views` says
+/// where the target is to be (Plan::views).
+std::unique_ptr<Stage> manual_stage(Ask ask, std::vector<capture::TargetPlane> views);
 
 }  // namespace nearfield::acquire

@@ -12,6 +12,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -73,6 +74,12 @@ CaptureHeader header_of(const CaptureOptions& options) {
     return header;
 }
 
+bool is_import(const CaptureHeader& header) {
+    const auto& options = header.provenance.options;
+    return std::any_of(options.begin(), options.end(),
+                       [](const auto& option) { return option.first == "import"; });
+}
+
 // A capture goes on by its own plan; another one's frames would not fit in.
 void check_same_plan(const CaptureOptions& options, const Capture& capture) {
     if (options.plan.empty())
@@ -101,7 +108,11 @@ void reject_damaged(CaptureWriter& writer, const Capture& capture) {
 CaptureWriter open_writer(const CaptureOptions& options) {
     if (!options.resume)
         return CaptureWriter::create(options.folder, header_of(options));
-    check_same_plan(options, capture::read_capture(options.folder));
+    const Capture capture = capture::read_capture(options.folder);
+    if (is_import(capture.header))
+        throw Error{"nothing to take", options.folder, "a capture from a plan",
+                    "imported photographs"};
+    check_same_plan(options, capture);
     CaptureWriter writer = CaptureWriter::reopen(options.folder);
     reject_damaged(writer, capture::read_capture(options.folder));
     return writer;
@@ -118,7 +129,7 @@ acquire::Bench open_device(const std::string& device) {
 acquire::Bench open_bench(const Plan& plan) {
     acquire::Bench bench = open_device(plan.camera.device);
     if (plan.stage == capture::StageKind::Manual)
-        bench.stage = acquire::manual_stage(ask);
+        bench.stage = acquire::manual_stage(ask, plan.views);
     if (!bench.stage)
         throw Error{"no stage", "the plan's stage 'camera'",
                     "a camera that moves its bench (LabSubject ...)",
@@ -129,9 +140,6 @@ acquire::Bench open_bench(const Plan& plan) {
 acquire::SessionResult run_capture(const CaptureOptions& options) {
     CaptureWriter writer = open_writer(options);
     const Capture capture = capture::read_capture(options.folder);
-    if (!capture.header.plan)
-        throw Error{"nothing to take", options.folder, "a capture with a plan",
-                    "imported photographs"};
     const std::vector<capture::Shot> missing = capture::missing_shots(capture);
     say(fmt::format("{}: {} of {} frames to take, about {:.0f} s\n", options.folder, missing.size(),
                     missing.size() + capture.frames.size(),

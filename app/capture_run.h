@@ -13,6 +13,7 @@ struct CaptureOptions {
     std::string plan;  // file; may be empty with `resume`: the capture has its own
     std::string folder;
     std::string photo_folder;  // to import instead
+    std::string board;         // that the photographs show, as board_from_text reads it; or empty
     bool resume = false;
     double reconnect_s = 60;
 };

@@ -36,8 +36,12 @@ std::string summary(const CaptureOptions& options, const acquire::SessionResult&
 void import_folder(const CaptureOptions& options) {
     const double start_s = now_s();
     ProgressLine line("import");
-    const acquire::ImportResult result = acquire::import_photos(
-        options.photo_folder, options.folder, [&line](double fraction) { line.update(fraction); });
+    acquire::ImportOptions import;
+    if (!options.board.empty())
+        import.board = capture::board_from_text(options.board, "--board");
+    const acquire::ImportResult result =
+        acquire::import_photos(options.photo_folder, options.folder, import,
+                               [&line](double fraction) { line.update(fraction); });
     line.finish();
     for (const std::string& remark : result.remarks)
         say(remark + "\n");
@@ -87,6 +91,11 @@ void add_capture(CLI::App& app) {
                "--import", c->photo_folder,
                "make the capture of a folder of photographs: a bracket, or views of a target")
             ->type_name("FOLDER");
+    sub->add_option("--board", c->board,
+                    "the board that the photographs show: charuco:8x6:0.03:0.0225:4x4_50 (squares, "
+                    "side of square and marker in m, dictionary) or chessboard:10x7:0.025")
+        ->type_name("BOARD")
+        ->needs(photographs);
     plan->excludes(photographs);
     resume->excludes(photographs);
     sub->callback([c, plan, resume, photographs] {

@@ -20,5 +20,7 @@ void add_lab(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_preview(CLI::App& app);
 void add_capture(CLI::App& app);
+void add_calibrate(CLI::App& app);
+void add_fit(CLI::App& app);
 
 }  // namespace nearfield::app

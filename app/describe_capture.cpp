@@ -39,12 +39,40 @@ std::string format_text(const Capture& capture) {
     return differ ? text + " and others" : text;
 }
 
-std::string plan_text(const capture::Plan& plan) {
+std::string board_text(const capture::BoardPlan& board) {
+    std::string text =
+        fmt::format("board      {} of {} x {} squares of {:g} mm",
+                    board.kind == capture::BoardKind::Charuco ? "ChArUco" : "chessboard",
+                    board.squares.x, board.squares.y, board.square_m * 1e3);
+    if (board.kind == capture::BoardKind::Charuco)
+        text += fmt::format(", markers of {:g} mm, {}", board.marker_m * 1e3, board.dictionary);
+    return text + "\n";
+}
+
+std::string views_text(const capture::Plan& plan) {
+    const auto count = [&plan](capture::TargetPlane plane) {
+        return std::count(plan.views.begin(), plan.views.end(), plane);
+    };
     return fmt::format(
-        "plan       {} x {} positions, pitch {:g} x {:g} mm, basis {}; exposures {} us, {} of "
-        "each\n",
-        plan.grid.x, plan.grid.y, plan.pitch_m.x * 1e3, plan.pitch_m.y * 1e3, plan.basis,
-        fmt::join(plan.bracket.exposures_us, ", "), plan.repeats);
+        "views      {} on the screen, {} on the filter's plane, {} free; {} of the "
+        "filter itself\n",
+        count(capture::TargetPlane::Screen), count(capture::TargetPlane::Filter),
+        count(capture::TargetPlane::Free), plan.filter_views.positions.size());
+}
+
+std::string plan_text(const capture::Plan& plan) {
+    std::string text;
+    if (plan.grid.x > 0)
+        text = fmt::format(
+            "plan       {} x {} positions, pitch {:g} x {:g} mm, basis {}; exposures {} us, {} of "
+            "each\n",
+            plan.grid.x, plan.grid.y, plan.pitch_m.x * 1e3, plan.pitch_m.y * 1e3, plan.basis,
+            fmt::join(plan.bracket.exposures_us, ", "), plan.repeats);
+    if (!plan.views.empty() || !plan.filter_views.positions.empty())
+        text += views_text(plan);
+    if (plan.board)
+        text += board_text(*plan.board);
+    return text;
 }
 
 std::string temperature_text(const Capture& capture) {

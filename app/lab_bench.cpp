@@ -23,11 +23,25 @@ struct Lab {
     const sample_data::Bench& bench() const { return sample_data::bench_of(*prepared); }
 };
 
+sample_data::Subject subject_of(ShotKind kind) {
+    switch (kind) {
+        case ShotKind::Target:
+            return sample_data::Subject::Target;
+        case ShotKind::Flat:
+            return sample_data::Subject::Flat;
+        case ShotKind::Filter:
+            return sample_data::Subject::Filter;
+        case ShotKind::Dark:
+        case ShotKind::Light:
+        case ShotKind::Reference:
+            break;
+    }
+    return sample_data::Subject::Position;
+}
+
 sample_data::Shot arranged(const capture::Shot& shot, const sample_data::Shot& before) {
     sample_data::Shot now = before;
-    now.subject = shot.kind == ShotKind::Target ? sample_data::Subject::Target
-                  : shot.kind == ShotKind::Flat ? sample_data::Subject::Flat
-                                                : sample_data::Subject::Position;
+    now.subject = subject_of(shot.kind);
     if (shot.position.x >= 0)
         now.position = shot.position;
     if (shot.view >= 0)

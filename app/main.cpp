@@ -65,6 +65,8 @@ void add_commands(CLI::App& app) {
     nearfield::app::add_devices(app);
     nearfield::app::add_preview(app);
     nearfield::app::add_capture(app);
+    nearfield::app::add_calibrate(app);
+    nearfield::app::add_fit(app);
     nearfield::app::add_lab(app);
     add_help(app);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that includes follow the layers, and that a third-party library stays behind its folder.
 
-formats/files <- formats/{model,capture} <- formats/{rays,scene,report} <- {acquire, render, sample_data} <- app; tests use all.
+formats/files <- formats/{model,capture} <- formats/{rays,scene,report} <- {acquire, calibrate, render, sample_data} <- app; tests use all.
 formats/shared is used by all. Prints each breach as file:line and exits 1 if there is one.
 """
 import pathlib
@@ -17,14 +17,17 @@ ALLOWED = {
     "formats/shared": [],
     "formats/photos": ["formats/files", "formats/capture"],
     "formats/model": ["formats/files", "formats/shared"],
+    "formats/rig": ["formats/files"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
     "acquire": ["formats"],
+    "calibrate": ["formats"],
+    "fit": ["formats"],
     "render": ["formats"],
     "sample_data": ["formats"],
-    "app": ["formats", "acquire", "render", "sample_data"],
-    "tests": ["formats", "acquire", "render", "sample_data", "app"],
+    "app": ["formats", "acquire", "calibrate", "fit", "render", "sample_data"],
+    "tests": ["formats", "acquire", "calibrate", "fit", "render", "sample_data", "app"],
 }
 
 # Where a library's headers may be included.
@@ -39,6 +42,9 @@ LIBRARIES = {
     r"OpenImageIO/": ["formats/photos"],
     r"arv\.h": ["acquire", "tests/sample_data", "tests/acquire"],
     r"CLI/": ["app"],
+    r"opencv2/": ["calibrate", "fit", "tests"],
+    r"ceres/": ["calibrate", "tests/calibrate"],
+    r"Eigen/": ["calibrate", "fit", "tests"],
     r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
 }
 

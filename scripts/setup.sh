@@ -6,8 +6,8 @@ packages=(
     # tools
     ca-certificates ccache clang-format-14 clang-tidy-14 cmake g++ git glslang-tools ninja-build pkg-config python3
     # libraries
-    libaravis-dev libbenchmark-dev libcli11-dev libegl-dev libembree-dev libepoxy-dev libfmt-dev libglm-dev libgmock-dev libgtest-dev libhwy-dev
-    libopenexr-dev libopenimageio-dev libpng-dev libtbb-dev libtinygltf-dev libusb-1.0-0-dev libxxhash-dev nlohmann-json3-dev
+    libaravis-dev libbenchmark-dev libceres-dev libcli11-dev libegl-dev libeigen3-dev libembree-dev libepoxy-dev libfmt-dev libglm-dev libgmock-dev libgtest-dev libhwy-dev
+    libopencv-dev libopenexr-dev libopenimageio-dev libpng-dev libtbb-dev libtinygltf-dev libusb-1.0-0-dev libxxhash-dev nlohmann-json3-dev
     # OpenGL on the CPU, for tests and for machines without a graphics card
     libegl1 libgl1-mesa-dri
     # the reader of docs/read_luminaire.py, plots in reports

@@ -29,7 +29,7 @@ CaptureHeader read_header(const std::string& path) {
     CaptureHeader header;
     if (field.has("plan")) {
         header.plan = plan_from(field.at("plan"));
-        if (header.plan->bracket.exposures_us.empty())
+        if (header.plan->grid.x > 0 && header.plan->bracket.exposures_us.empty())
             throw Error{"bad capture", path + ".plan", "exposures_us", "none"};
     }
     header.response = meaning_of(kResponses, field.at("response"));

@@ -30,7 +30,9 @@ enum class Response { Linear, Unknown };
 
 /// What a capture is; its exposures are known (found by metering where the plan said so).
 struct CaptureHeader {
-    std::optional<Plan> plan;  // none for imported photographs: nothing is missing
+    /// None for imported photographs, of which nothing is missing; those that show a known board
+    /// have a plan of its views and nothing else.
+    std::optional<Plan> plan;
     Response response = Response::Linear;
     Provenance provenance;
 };

@@ -3,6 +3,7 @@
 /// from it.
 #pragma once
 
+#include "formats/capture/board.h"
 #include "formats/files/json_field.h"
 
 #include <glm/glm.hpp>
@@ -23,6 +24,7 @@ struct CameraPlan {
     double gain_db = 0;
     int packet_size_bytes = 0;  // 0: the largest that arrives
     bool is_byte_swapped = false;
+    glm::dmat3 rgb_from_raw{1.0};  // linear Rec.709 from white-balanced raw colors, of a data sheet
 };
 
 /// Who moves filter, lamp and targets: a person who is asked, or the camera's own features
@@ -37,25 +39,57 @@ struct BracketPlan {
     double darkest_share = 1e-3;          // of the brightest pixel: what is_auto still exposes well
 };
 
+/// Where the target is in a view: on the screen's plane S, on the filter's plane U with the screen
+/// taken away, or anywhere before the camera.
+enum class TargetPlane { Screen, Filter, Free };
+
+/// Looks at the filter itself, without the screen, against an even source behind it.
+struct FilterViewPlan {
+    std::vector<glm::ivec2> positions;  // columns and rows of the grid, each at most once
+    double exposure_us = 0;             // 0: the bracket's middle one
+};
+
+/// A photometer whose head lies in S while positions are taken. Its readings are the frames'
+/// `reading_lx`; they give the scale of all light.
+struct PhotometerPlan {
+    glm::dvec2 on_screen_board_m{0};  // its middle, in the board's frame of the first screen view
+    double sigma_rel = 0;             // random, of a reading
+    double mismatch_rel = 0;          // systematic: V(lambda) mismatch and its own calibration
+};
+
+/// The screen's luminance factor against the viewing angle, relative to an ideal diffuser of its
+/// own reflectance; linear between points. Empty: a diffuser.
+struct ScreenPlan {
+    std::vector<double> angle_deg;  // to the normal, ascending from 0
+    std::vector<double> factor;     // 1 at 0
+};
+
+/// What to take, and what the lab knows of its parts.
 struct Plan {
     CameraPlan camera;
     StageKind stage = StageKind::Manual;
-    glm::ivec2 grid{0};  // filter positions, columns x rows; 1 x 1: no filter
+    glm::ivec2 grid{0};  // filter positions, columns x rows; 1 x 1: no filter; 0: targets alone
     glm::dvec2 pitch_m{0};
     std::string basis;
+    glm::dvec3 filter_peak{1.0};  // transmission at the filter's center, by channel
+    FilterViewPlan filter_views;
     BracketPlan bracket;
     int repeats = 1;
     int darks = 4;  // for every exposure, lamp off
-    int flats = 0;  // of the evenly lit screen
-    int target_views = 0;
-    double flat_exposure_us = 0, target_exposure_us = 0;  // 0: the bracket's middle one
+    int flats = 0;  // of an even source before the lens, at each of their exposures
+    std::vector<double> flat_exposures_us;  // ascending; empty: the bracket's middle one
+    std::optional<BoardPlan> board;         // none: its views tell nothing
+    std::vector<TargetPlane> views;         // of the board
+    double target_exposure_us = 0;          // 0: the bracket's middle one
+    ScreenPlan screen;
+    std::optional<PhotometerPlan> photometer;
     int drift_every = 0;            // light positions between two looks at the reference; 0: never
     double drift_limit_rel = 0.01;  // stops where the lamp changed by more
     double ratio_limit_rel = 0.02;  // stops where exposures are in another ratio than asked for
     double settle_s = 0;            // waited after every move
 };
 
-enum class ShotKind { Target, Flat, Dark, Light, Reference };
+enum class ShotKind { Target, Flat, Filter, Dark, Light, Reference };
 
 /// One frame to take. Its number is its place in the plan's list, from 0; shots of one plan never
 /// change their numbers.
@@ -69,13 +103,16 @@ struct Shot {
 };
 
 /// Throws Error with the key's place where something is missing, of another kind or out of range.
+/// A plan that a person wrote must say the exposures of all that it asks for; the one in an
+/// import's header need not.
 Plan read_plan(const std::string& path);
 Plan plan_from(const JsonField& document);
 Json json_of(const Plan& plan);
 
-/// All frames of a plan in the order in which they are taken: targets, flats, darks, then positions
-/// in serpentine order with their exposures and repeats, and a look at the reference every
-/// `drift_every` positions. The bracket must be known.
+/// All frames of a plan in the order in which they are taken: targets, flats, filter views, darks
+/// at every exposure of them and of the bracket, then positions in serpentine order with their
+/// exposures and repeats, and a look at the reference every `drift_every` positions. The bracket
+/// must be known.
 std::vector<Shot> shots_of(const Plan& plan);
 
 /// "light_x003_y002_1600us_r000": names a shot for people and in files' names.

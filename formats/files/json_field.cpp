@@ -41,6 +41,10 @@ JsonField JsonField::at(const std::string& key) const {
     return {*found, where_ + "." + key};
 }
 
+bool JsonField::is_list() const {
+    return value_->is_array();
+}
+
 std::vector<JsonField> JsonField::elements() const {
     if (!value_->is_array())
         fail("a list");

@@ -1,56 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/report/plot.h"
 
+#include "formats/report/gnuplot.h"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+#include <utility>
 
 namespace nearfield::report {
 namespace {
-
-// A gnuplot string in single quotes, where nothing is interpreted. gnuplot 5.4 does not read a
-// doubled quote everywhere, so a quote becomes the typographic one.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) {
-        result += c == '\'' ? std::string("\u2019") : std::string(1, c == '\n' ? ' ' : c);
-    }
-    return result + "'";
-}
-
-// What gnuplot prints for a script; nothing if it is missing or fails.
-std::optional<std::string> run_gnuplot(const std::string& script) {
-    std::string path = (std::filesystem::temp_directory_path() / "nearfield-plot-XXXXXX").string();
-    const int descriptor = mkstemp(path.data());
-    if (descriptor < 0) {
-        return std::nullopt;
-    }
-    std::FILE* const file = fdopen(descriptor, "wb");
-    const bool is_written = std::fwrite(script.data(), 1, script.size(), file) == script.size();
-    const bool is_closed = std::fclose(file) == 0;
-    std::optional<std::string> output;
-    if (is_written && is_closed) {
-        if (std::FILE* const pipe = popen(("gnuplot '" + path + "' 2>/dev/null").c_str(), "r")) {
-            std::string bytes;
-            std::array<char, 65536> block;
-            for (std::size_t got = 0;
-                 (got = std::fread(block.data(), 1, block.size(), pipe)) > 0;) {
-                bytes.append(block.data(), got);
-            }
-            if (pclose(pipe) == 0 && !bytes.empty()) {
-                output = std::move(bytes);
-            }
-        }
-    }
-    unlink(path.c_str());
-    return output;
-}
 
 bool is_shown(double value, bool log_scale) {
     return std::isfinite(value) && (!log_scale || value > 0.0);
@@ -130,8 +90,9 @@ std::optional<Image> draw(const HeatMap& map, const std::string& caption) {
     script += fmt::format("set cbrange [{:.8g}:{:.8g}]\n", map.low, map.high);
     script += map.flip_x ? fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.upper.x, map.lower.x)
                          : fmt::format("set xrange [{:.8g}:{:.8g}]\n", map.lower.x, map.upper.x);
-    script += fmt::format("set yrange [{:.8g}:{:.8g}]\nunset key\n$map << EOD\n", map.lower.y,
-                          map.upper.y);
+    const auto [bottom, top] =
+        map.flip_y ? std::pair(map.upper.y, map.lower.y) : std::pair(map.lower.y, map.upper.y);
+    script += fmt::format("set yrange [{:.8g}:{:.8g}]\nunset key\n$map << EOD\n", bottom, top);
     const glm::dvec2 step = (map.upper - map.lower) / glm::dvec2(map.size);
     for (int row = 0; row < map.size.y; ++row) {
         for (int column = 0; column < map.size.x; ++column) {

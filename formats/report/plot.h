@@ -47,12 +47,40 @@ struct HeatMap {
     double low = 0, high = 0;    // range of the scale
     bool log_scale = false;      // values below `low` are drawn as `low`
     bool flip_x = false;         // x rises to the left
+    bool flip_y = false;         // y rises downwards, as in pictures
     Palette palette = Palette::FalseColor;
     glm::ivec2 picture_px{1000, 480};
+};
+
+/// Small vectors at places of a picture or plane, drawn enlarged.
+struct VectorMap {
+    std::string title, x_label, y_label;
+    glm::dvec2 lower{0.0}, upper{0.0};  // of the drawing, in the axes' units
+    bool flip_y = false;                // y rises downwards, as in pictures
+    double enlargement = 1.0;
+    struct Vectors {
+        std::string name, color;  // "#rrggbb"
+        std::vector<glm::dvec2> at, vector;
+    };
+    std::vector<Vectors> groups;
+};
+
+/// Lines in space, seen from a corner, all axes to the same scale.
+struct Wireframe {
+    std::string title, x_label, y_label, z_label;
+    double turn_deg = 30, tilt_deg = 60;  // gnuplot's view: tilt from above, then turn
+    struct Line {
+        std::string name;  // in the legend; empty: not there
+        std::string color;
+        std::vector<glm::dvec3> points;
+    };
+    std::vector<Line> lines;
 };
 
 /// Nothing where gnuplot is not installed or fails; the caller says so on its page.
 std::optional<Image> draw(const Plot& plot, const std::string& caption);
 std::optional<Image> draw(const HeatMap& map, const std::string& caption);
+std::optional<Image> draw(const VectorMap& map, const std::string& caption);
+std::optional<Image> draw(const Wireframe& wireframe, const std::string& caption);
 
 }  // namespace nearfield::report

@@ -107,8 +107,8 @@ struct BenchCamera {
 
 struct BenchStray {
     double veil_lx = 0.0;  // white light on the screen and on the photometer, always
-    /// Share of the light held back by filter or plate that reaches the screen all the same: what
-    /// the part in view loses on average, times this, evenly.
+    /// Share of the light held back by filter or plate that reaches screen and photometer all the
+    /// same: what the part in view loses on average, times this, evenly.
     double blocked_share = 0.0;
 };
 
@@ -180,6 +180,8 @@ enum class Subject {
     Open,      // nothing on U (Setup::Direct: not possible)
     Flat,      // an even source of flat_cd_m2 before the lens
     Target,    // the board in pose Shot::target_view
+    Filter,    // the filter (plate) at Shot::position itself, without the screen, against an even
+               // source of flat_cd_m2 behind it (Setup::Direct: not possible)
     Cap,       // the lens is covered
 };
 
@@ -212,7 +214,8 @@ const Bench& bench_of(const PreparedBench& prepared);
 
 /// Raw numbers of one exposure, [row from the top][column], 0 ... 2^bits - 1.
 /// Throws Error if the Shot's position or view does not exist, or exposure or gain are not finite
-/// and >= 0. Thread-safe. Cost: milliseconds at 512 x 512 (docs/virtual_bench.md).
+/// and >= 0. Thread-safe. Cost: milliseconds at 512 x 512 (docs/virtual_bench.md); Subject::Filter
+/// is computed anew each time.
 std::vector<std::uint16_t> expose(const PreparedBench& prepared, const Shot& shot);
 
 /// Expected electrons of a pixel without fixed pattern, saturation and dark current, per second

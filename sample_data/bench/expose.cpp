@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/files/error.h"
 #include "sample_data/bench/bench_random.h"
+#include "sample_data/bench/filter_view.h"
 #include "sample_data/bench/prepared.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 namespace nearfield::sample_data {
 namespace {
@@ -19,8 +21,9 @@ constexpr double kSecondsPerMicrosecond = 1e-6;
 
 // Pictures whose sum, each with a factor, is a shot's expected signal.
 struct Signal {
-    const std::vector<float>* lamp = nullptr;  // what drifts with the lamp
-    const std::vector<float>* rest = nullptr;
+    std::span<const float> lamp;  // what drifts with the lamp; empty: none
+    std::span<const float> rest;
+    std::vector<float> made;  // holds a picture that is not kept
 };
 
 void require(bool is_right,
@@ -43,31 +46,36 @@ Signal signal_of(const PreparedBench& prepared, const Shot& shot) {
     Signal signal;
     switch (shot.subject) {
         case Subject::Position:
-            signal.lamp = &prepared.positions[position_index(prepared.bench, shot.position)];
-            signal.rest = &prepared.room;
+            signal.lamp = prepared.positions[position_index(prepared.bench, shot.position)];
+            signal.rest = prepared.room;
             break;
         case Subject::Open:
             require(!prepared.open.empty(), "shot.subject", "a subject of this setup", "open");
-            signal.lamp = &prepared.open;
-            signal.rest = &prepared.room;
+            signal.lamp = prepared.open;
+            signal.rest = prepared.room;
             break;
         case Subject::Flat:
-            signal.rest = &prepared.flat;
+            signal.rest = prepared.flat;
             break;
         case Subject::Target:
             require(shot.target_view >= 0 &&
                         static_cast<std::size_t>(shot.target_view) < prepared.targets.size(),
                     "shot.target_view", fmt::format("0 ... {}", int(prepared.targets.size()) - 1),
                     std::to_string(shot.target_view));
-            signal.rest = &prepared.targets[static_cast<std::size_t>(shot.target_view)];
+            signal.rest = prepared.targets[static_cast<std::size_t>(shot.target_view)];
+            break;
+        case Subject::Filter:
+            require(prepared.bench.setup != Setup::Direct, "shot.subject",
+                    "a subject of this setup", "filter");
+            signal.made = filter_picture(prepared.bench, prepared.places,
+                                         position_index(prepared.bench, shot.position));
+            signal.rest = signal.made;
             break;
         case Subject::Cap:
             break;
     }
     if (!shot.lamp_on)
-        signal.lamp = nullptr;
-    if (signal.rest != nullptr && signal.rest->empty())
-        signal.rest = nullptr;
+        signal.lamp = {};
     return signal;
 }
 
@@ -102,15 +110,14 @@ std::uint16_t pixel_dn(const Readout& readout, std::size_t k) {
     return static_cast<std::uint16_t>(std::clamp(dn + 0.5F, 0.0F, readout.most_dn));
 }
 
-Readout make_readout(const PreparedBench& prepared, const Shot& shot) {
+Readout make_readout(const PreparedBench& prepared, const Shot& shot, const Signal& signal) {
     const BenchCamera& camera = prepared.bench.camera;
-    const Signal signal = signal_of(prepared, shot);
     const double exposure_s = shot.exposure_us * kSecondsPerMicrosecond;
     const double dark_factor = std::exp2(
         (sensor_c(prepared.bench, shot.time_s) - camera.dark_reference_c) / camera.dark_doubling_c);
     Readout readout;
-    readout.lamp = signal.lamp != nullptr ? signal.lamp->data() : nullptr;
-    readout.rest = signal.rest != nullptr ? signal.rest->data() : nullptr;
+    readout.lamp = signal.lamp.empty() ? nullptr : signal.lamp.data();
+    readout.rest = signal.rest.empty() ? nullptr : signal.rest.data();
     readout.prnu = prepared.prnu.data();
     readout.dark = prepared.dark_e_per_s.data();
     readout.offset = prepared.offset_dn.data();
@@ -159,7 +166,8 @@ std::vector<std::uint16_t> expose(const PreparedBench& prepared, const Shot& sho
             fmt::format("{}", shot.gain_db));
     require(std::isfinite(shot.time_s), "shot.time_s", "a finite time",
             fmt::format("{}", shot.time_s));
-    const Readout readout = make_readout(prepared, shot);
+    const Signal signal = signal_of(prepared, shot);
+    const Readout readout = make_readout(prepared, shot, signal);
     std::vector<std::uint16_t> raw(prepared.prnu.size());
     constexpr std::size_t kPixelsPerTask = 16384;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, raw.size(), kPixelsPerTask),
@@ -173,11 +181,8 @@ std::vector<std::uint16_t> expose(const PreparedBench& prepared, const Shot& sho
 std::vector<float> signal_e_per_s(const PreparedBench& prepared, const Shot& shot) {
     const Signal signal = signal_of(prepared, shot);
     std::vector<float> sum(prepared.prnu.size(), 0.0F);
-    for (const std::vector<float>* picture : {signal.lamp, signal.rest}) {
-        if (picture == nullptr)
-            continue;
-        std::transform(sum.begin(), sum.end(), picture->begin(), sum.begin(), std::plus<>());
-    }
+    for (const std::span<const float> picture : {signal.lamp, signal.rest})
+        std::transform(picture.begin(), picture.end(), sum.begin(), sum.begin(), std::plus<>());
     return sum;
 }
 

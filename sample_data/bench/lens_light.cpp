@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sample_data/bench/lens_light.h"
 
-#include "formats/model/profile.h"
+#include "sample_data/bench/transmission.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -45,31 +45,6 @@ bool has_jumps(const Profile& profile) {
     return false;
 }
 
-// Integral of the profile from its lower end to x.
-double integral_to(const Profile& profile, double x) {
-    const double half = 0.5 * static_cast<double>(profile.cells.size());
-    double sum = 0.0;
-    for (std::size_t c = 0; c < profile.cells.size(); ++c) {
-        const double lower = static_cast<double>(c) - half;
-        const double upper = std::clamp(x, lower, lower + 1.0);
-        const std::array<double, 3>& a = profile.cells[c];
-        const auto primitive = [&](double t) {
-            return t * (a[0] + t * (0.5 * a[1] + t * a[2] / 3.0));
-        };
-        sum += primitive(upper) - primitive(lower);
-    }
-    return sum;
-}
-
-// The profile at x, or its mean over [x - width/2, x + width/2].
-double transmission_1d(const Profile& profile, double x, double width) {
-    if (2.0 * std::abs(x) >= static_cast<double>(profile.cells.size()) + width)
-        return 0.0;
-    if (width == 0.0)
-        return model::eval(profile, x);
-    return (integral_to(profile, x + 0.5 * width) - integral_to(profile, x - 0.5 * width)) / width;
-}
-
 // Transmissions of all positions for one ray.
 class Transmissions {
   public:
@@ -100,8 +75,8 @@ class Transmissions {
         for (std::size_t m = 0; m < value.size(); ++m) {
             const glm::dvec2 x = (at_m - places_.position_m[m]) * inverse_pitch_;
             if (std::abs(x.x) < half_support_ && std::abs(x.y) < half_support_)
-                value[m] = transmission_1d(filter_.profile, x.x, width.x) *
-                           transmission_1d(filter_.profile, x.y, width.y);
+                value[m] = mean_transmission(filter_.profile, x.x, width.x) *
+                           mean_transmission(filter_.profile, x.y, width.y);
         }
     }
 

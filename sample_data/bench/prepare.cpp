@@ -67,10 +67,14 @@ void prepare_photometer(const RayLamp& lamp, PreparedBench& prepared) {
     const LineLight line =
         line_light(light, place, photometer.normal, color, is_filter ? position_count(bench) : 0);
     prepared.photometer_open_lx = line.open[0];
+    std::vector<double> strayed(prepared.photometer_lx.size(), 0.0);
+    if (bench.stray.blocked_share > 0.0)
+        strayed = strayed_light(light, color);
     for (std::size_t m = 0; m < prepared.photometer_lx.size(); ++m)
-        prepared.photometer_lx[m] = is_filter ? line.positions[m]
-                                              : hole_light(light, place, photometer.normal, color,
-                                                           prepared.places.position_m[m])[0];
+        prepared.photometer_lx[m] =
+            strayed[m] + (is_filter ? line.positions[m]
+                                    : hole_light(light, place, photometer.normal, color,
+                                                 prepared.places.position_m[m])[0]);
 }
 
 }  // namespace

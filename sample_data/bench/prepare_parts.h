@@ -7,6 +7,7 @@
 #include "sample_data/bench/ray_lamp.h"
 
 #include <functional>
+#include <vector>
 
 namespace nearfield::sample_data {
 
@@ -26,6 +27,10 @@ inline double channel_sum(glm::dvec3 weights) {
 void prepare_screen(const RayLamp& lamp,
                     const std::function<void(double)>& progress,
                     PreparedBench& prepared);
+
+/// Light held back that strays evenly all the same, as one color weighs it: [position]. From a
+/// coarse grid on what the camera sees of the screen.
+std::vector<double> strayed_light(const LensLight& light, const SeenColors& color);
 
 /// Pictures by a camera that looks into the lamp.
 void prepare_direct(const RayLamp& lamp,

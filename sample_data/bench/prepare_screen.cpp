@@ -188,6 +188,31 @@ OpticsError estimate_error(const LensLight& light,
 
 }  // namespace
 
+std::vector<double> strayed_light(const LensLight& light, const SeenColors& color) {
+    const Bench& bench = *light.bench;
+    const ScreenGrid seen =
+        make_screen_grid(bench, *light.places, make_sample_grid(bench.camera, 1));
+    // Midpoints of a few hundred parts of the area that the grid's own points stand for.
+    constexpr glm::ivec2 kParts{32, 24};
+    const glm::dvec2 step_m = seen.step_m * glm::dvec2(seen.count) / glm::dvec2(kParts);
+    const glm::dvec2 min_m = seen.min_m - 0.5 * seen.step_m;
+    const auto positions = static_cast<std::size_t>(position_count(bench));
+    std::vector<double> blocked(positions, 0.0);
+    for (int row = 0; row < kParts.y; ++row) {
+        std::vector<glm::dvec3> points;
+        for (int column = 0; column < kParts.x; ++column)
+            points.push_back(
+                screen_point(*light.places, min_m + (glm::dvec2(column, row) + 0.5) * step_m));
+        const LineLight line = light_on_line(light, points, color);
+        for (std::size_t m = 0; m < positions; ++m)
+            for (std::size_t i = 0; i < points.size(); ++i)
+                blocked[m] += line.open[i] - line.positions[m * points.size() + i];
+    }
+    for (double& value : blocked)
+        value *= bench.stray.blocked_share / (kParts.x * kParts.y);
+    return blocked;
+}
+
 void prepare_screen(const RayLamp& lamp,
                     const std::function<void(double)>& progress,
                     PreparedBench& prepared) {

@@ -20,10 +20,13 @@ capture::Frame look(const capture::Shot& shot, double exposure_us, double light,
     frame.size_px = {32, 32};
     frame.bits = 12;
     const bool is_dark = shot.kind == capture::ShotKind::Dark;
+    const bool is_even = shot.kind == capture::ShotKind::Filter;
     const double place = shot.position.x < 0 ? 1 : 1.0 / (1 + shot.position.x + shot.position.y);
     for (unsigned k = 0; k < 32 * 32; ++k) {
         const double signal =
-            is_dark ? 0 : light * place * exposure_us * 3 * std::exp(-static_cast<double>(k) / 200);
+            is_dark   ? 0
+            : is_even ? exposure_us
+                      : light * place * exposure_us * 3 * std::exp(-static_cast<double>(k) / 200);
         const unsigned noise =
             (k + static_cast<unsigned>(frame_number) * 1024U) * 2654435761U >> 17U & 3U;
         frame.values.push_back(static_cast<std::uint16_t>(std::min(64.0 + signal + noise, 4095.0)));

@@ -77,6 +77,51 @@ TEST_F(Session, TakesEveryShotOnce) {
     EXPECT_EQ(run(script).frames, 0);
 }
 
+// The bench shows an even 500 DN and black where it stands for a look at the filter.
+TEST_F(Session, LooksAtTheFilterBeforeItsDarks) {
+    capture::CaptureHeader with_views = header();
+    with_views.plan->views = {capture::TargetPlane::Screen, capture::TargetPlane::Free};
+    with_views.plan->flats = 2;
+    with_views.plan->flat_exposures_us = {150, 300};
+    with_views.plan->filter_views = {{{0, 0}, {2, 1}}, 500};
+    CaptureWriter::create(folder_, with_views);
+    Script stopped;
+    stopped.stop_at = 18;  // 11 frames to find the latency, then within the looks at the filter
+    EXPECT_THROW(run(stopped), Stopped);
+    EXPECT_EQ(capture::read_capture(folder_).frames.size(), 7U);
+    Script script;
+    const SessionResult result = run(script);
+    EXPECT_LT(result.worst_ratio_rel, 0.01);
+    expect_complete();
+    std::vector<glm::ivec2> seen;
+    for (const auto& [number, record] : capture::read_capture(folder_).frames) {
+        if (record.shot.kind != capture::ShotKind::Filter)
+            continue;
+        seen.push_back(record.shot.position);
+        EXPECT_NEAR(record.mean_dn, 64 + 500 + 1.5, 0.5);
+        EXPECT_EQ(record.exposure_us, 500);
+    }
+    EXPECT_EQ(seen, (std::vector{glm::ivec2(0, 0), glm::ivec2(2, 1)}));
+    const Capture capture = capture::read_capture(folder_);
+    EXPECT_EQ(capture.frames.at(6).shot.kind, capture::ShotKind::Filter);
+    EXPECT_EQ(capture.frames.at(8).shot.kind, capture::ShotKind::Dark);
+}
+
+// What photographs of a board become, taken by a camera: no position, nothing metered or judged.
+TEST_F(Session, TakesTargetsAlone) {
+    capture::CaptureHeader targets;
+    targets.plan.emplace();
+    targets.plan->views = {capture::TargetPlane::Free, capture::TargetPlane::Free};
+    targets.plan->target_exposure_us = 400;
+    targets.plan->darks = 1;
+    CaptureWriter::create(folder_, targets);
+    Script script;
+    const SessionResult result = run(script);
+    EXPECT_EQ(result.frames, 3);
+    EXPECT_EQ(result.share_exposed_twice, 1);
+    expect_complete();
+}
+
 TEST_F(Session, WaitsForALateCamera) {
     Script script;
     script.late_frames = 2;

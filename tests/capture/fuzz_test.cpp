@@ -45,7 +45,15 @@ CaptureHeader small_header() {
 }
 
 TEST(CaptureFuzz, PlansAreReadOrRefused) {
-    fuzz(json_of(*small_header().plan).dump(2), [](const std::string& text) {
+    Plan plan = *small_header().plan;
+    plan.board = board_from_text("charuco:8x6:0.03:0.0225:4x4_50", "board");
+    plan.views = {TargetPlane::Screen, TargetPlane::Free};
+    plan.filter_views.positions = {{0, 1}, {1, 1}};
+    plan.flats = 2;
+    plan.flat_exposures_us = {100, 300};
+    plan.screen = {{0, 10, 20}, {1, 0.99, 0.98}};
+    plan.photometer.emplace();
+    fuzz(json_of(plan).dump(2), [](const std::string& text) {
         const Json document = parse_json(text, "plan.json");
         const Plan plan = plan_from({document, "plan.json"});
         if (!plan.bracket.exposures_us.empty())  // else they are still to be metered

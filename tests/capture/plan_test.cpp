@@ -72,7 +72,7 @@ TEST(Plan, MovesTheFilterByOneStepAtATime) {
 TEST(Plan, EstimatesExposuresMovesAndOverhead) {
     Plan plan = plan_of(with("\"drift\"", "\"settle_s\": 0.5, \"drift\""));
     plan.drift_every = 0;
-    plan.target_views = 0;
+    plan.views.clear();
     plan.flats = 0;
     plan.darks = 0;
     const double exposures_s = 6 * 2 * (100 + 400 + 1600) * 1e-6;

@@ -111,10 +111,21 @@ class CaptureTest(ProgramTest):
         self.refused(2, "capture", "-o", "other")
 
     def test_without_a_wire_the_frames_are_the_same(self):
+        kinds = {"filter_views": {"positions": [[0, 0], [2, 1]], "exposure_us": 30000},
+                 "flats": {"count": 2, "exposures_us": [2000, 5000]},
+                 "targets": {"board": {"kind": "charuco", "squares": [8, 6], "square_m": 0.03, "marker_m": 0.0225,
+                                       "dictionary": "4x4_50"}, "views": ["screen", "screen", "screen", "filter"]}}
         with served(ADDRESS + "13", "--fast"):
-            self.done("capture", plan(ADDRESS + "13"), "-o", "wire")
-        self.done("capture", plan("bench:bench.json", "direct.json"), "-o", "direct")
+            self.done("capture", plan(ADDRESS + "13", **kinds), "-o", "wire")
+        self.done("capture", plan("bench:bench.json", "direct.json", **kinds), "-o", "direct")
         self.assert_equal_captures("wire", "direct")
+        filters = [f for f in frames("direct").values() if f["shot"]["kind"] == "filter"]
+        self.assertEqual([f["shot"]["position"] for f in filters], [[0, 0], [2, 1]])
+        # The filter against its source: bright in its middle, and in another place for each position.
+        self.assertGreater(min(f["mean_dn"] for f in filters), 52)
+        self.assertNotEqual(filters[0]["xxh128"], filters[1]["xxh128"])
+        self.assertIn("views      3 on the screen, 1 on the filter's plane, 0 free; 2 of the filter itself",
+                      self.done("info", "direct").stdout)
         self.done("lab", "truth", "bench.json", "-o", "truth.json")
         self.assertTrue(json.loads(pathlib.Path("truth.json").read_text()))
 

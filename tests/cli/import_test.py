@@ -54,6 +54,25 @@ class ImportTest(ProgramTest):
         self.assertEqual([f["shot"]["view"] for f in frames("views")], [0, 1])
         self.assertEqual([f["mean_dn"] for f in frames("views")], [(200 + 100 + 7) / 3, (100 + 50 + 7) / 3])
 
+    def test_a_known_board_makes_them_its_views(self):
+        self.write("a1.png", 200)
+        self.write("a2.png", 100)
+        pathlib.Path("photos/a.hdr_image_list.txt").write_text("2\na1.png 0.5 8 0 0\na2.png 2 8 0 0\n")
+        said = self.done("capture", "--import", "photos", "--board", "chessboard:10x7:0.025", "-o", "board").stderr
+        self.assertIn("views of a target", said)
+        plan = json.loads(pathlib.Path("board/capture.json").read_text())["plan"]
+        self.assertEqual(plan["targets"], {"board": {"kind": "chessboard", "squares": [10, 7], "square_m": 0.025},
+                                           "views": ["free", "free"]})
+        self.assertNotIn("filter", plan)
+        self.assertEqual([(f["shot"]["kind"], f["shot"]["view"]) for f in frames("board")], [("target", 0), ("target", 1)])
+        info = json.loads(self.done("info", "board", "--json").stdout)
+        self.assertEqual((info["missing"], info["frames_by_kind"]), (0, {"target": 2}))
+        self.assertIn("chessboard of 10 x 7 squares of 25 mm", self.done("info", "board").stdout)
+        self.assertIn("imported photographs", self.refused(1, "capture", "-o", "board", "--resume"))
+        self.assertIn("--board", self.refused(1, "capture", "--import", "photos", "--board", "charuco:8x6:0.03", "-o", "x"))
+        self.refused(2, "capture", "plan.json", "--board", "chessboard:10x7:0.025", "-o", "x")
+        self.assertNotIn("x", self.files())
+
     def test_what_is_no_photograph_is_refused(self):
         self.refused(1, "capture", "--import", "nowhere", "-o", "x")
         pathlib.Path("photos").mkdir()

@@ -285,10 +285,13 @@ TEST(BenchOptics, PositionsOfAPartitionOfUnitySumToTheOpenLamp) {
     }
 }
 
-// What strays is the share of what the filter holds back, and lights the screen evenly.
+// What strays is the share of what the filter holds back, and lights the screen evenly, and the
+// photometer as much. The camera weighs colors as the eye does, after the screen's reflectance.
 TEST(BenchOptics, BlockedLightStraysOntoTheScreen) {
     Bench bench = test::small_bench();
     bench.accuracy.lens_step = 3.0;
+    bench.camera.response_e_per_cd_m2_s = {500 * 0.2126 / 0.7, 0, 0, 500 * 0.7152 / 0.8, 0, 0,
+                                           500 * 0.0722 / 0.9, 0, 0};
     const Prepared without = prepare(bench);
     bench.stray.blocked_share = 0.01;
     bench.stray.veil_lx = 3.0;
@@ -311,6 +314,8 @@ TEST(BenchOptics, BlockedLightStraysOntoTheScreen) {
     const double open_lx = test::mean_of(without->open) / per_lx;
     EXPECT_GT(stray_lx, 0.002 * open_lx);
     EXPECT_LT(stray_lx, 0.02 * open_lx);
+    // The photometer's is a mean over fewer points.
+    EXPECT_NEAR((with->photometer_lx[4] - without->photometer_lx[4]) / stray_lx, 1.0, 0.01);
 }
 
 // The photometer against the formula's own quadrature.

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fit/band_cholesky.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace nearfield::fit {
+namespace {
+
+constexpr int kBlock = 4;  // columns at a time
+constexpr int kChunk = 8;  // rows at a time: with 4 columns, 8 sums in registers
+constexpr double kLeastPivot = 1e-14;
+
+using Rows4 = Eigen::Array<double, 4, 1>;
+using Rows8 = Eigen::Array<double, kChunk, 1>;
+using Lanes = Eigen::Array<double, kLanes, 1>;
+
+template <typename Rows>
+Eigen::Map<Rows> at(double* p) {
+    return Eigen::Map<Rows>(p);
+}
+
+template <typename Rows>
+Eigen::Map<const Rows> at(const double* p) {
+    return Eigen::Map<const Rows>(p);
+}
+
+const double* column(const BandMatrix& matrix, int j) {
+    return &matrix.value[static_cast<std::size_t>(j) * static_cast<std::size_t>(matrix.leading)];
+}
+
+double* column(BandMatrix& matrix, int j) {
+    return &matrix.value[static_cast<std::size_t>(j) * static_cast<std::size_t>(matrix.leading)];
+}
+
+double* lanes_of(double* x, int row) {
+    return x + static_cast<std::ptrdiff_t>(row) * kLanes;
+}
+
+// One past the last row that any of four columns reaches, the block itself at least.
+int block_end(const BandMatrix& matrix, int j0) {
+    return std::max(matrix.row_end[static_cast<std::size_t>(j0 + kBlock - 1)], j0 + kBlock);
+}
+
+// A[i..i+7, j0..j0+3] -= L[i..i+7, k] L[j0..j0+3, k]^T over columns k before the block.
+void update_chunk(BandMatrix& matrix, int j0, int i) {
+    double* a0 = column(matrix, j0) + i;
+    const std::ptrdiff_t leading = matrix.leading;
+    Rows8 sum0 = at<Rows8>(a0), sum1 = at<Rows8>(a0 + leading);
+    Rows8 sum2 = at<Rows8>(a0 + 2 * leading), sum3 = at<Rows8>(a0 + 3 * leading);
+    const double* l = column(matrix, matrix.first[static_cast<std::size_t>(i)]);
+    for (int k = matrix.first[static_cast<std::size_t>(i)]; k < j0; ++k, l += leading) {
+        const Rows8 rows = at<Rows8>(l + i);
+        sum0 -= rows * l[j0];
+        sum1 -= rows * l[j0 + 1];
+        sum2 -= rows * l[j0 + 2];
+        sum3 -= rows * l[j0 + 3];
+    }
+    at<Rows8>(a0) = sum0;
+    at<Rows8>(a0 + leading) = sum1;
+    at<Rows8>(a0 + 2 * leading) = sum2;
+    at<Rows8>(a0 + 3 * leading) = sum3;
+}
+
+// Cholesky factorization of the block on the diagonal.
+void factorize_block(BandMatrix& matrix, int j0, const double* diagonal) {
+    for (int c = 0; c < kBlock; ++c) {
+        double* col = column(matrix, j0 + c) + j0;
+        for (int d = 0; d < c; ++d) {
+            const double* before = column(matrix, j0 + d) + j0;
+            for (int r = c; r < kBlock; ++r)
+                col[r] -= before[r] * before[c];
+        }
+        const double inverse = 1.0 / std::sqrt(std::max(col[c], kLeastPivot * diagonal[c]));
+        matrix.inverse_diagonal[static_cast<std::size_t>(j0 + c)] = inverse;
+        for (int r = c; r < kBlock; ++r)
+            col[r] *= inverse;
+        col[c] = 1.0 / inverse;
+    }
+}
+
+// Rows below the block: X <- X L_block^-T.
+void finish_rows(BandMatrix& matrix, int j0, int i) {
+    const std::ptrdiff_t leading = matrix.leading;
+    double* p = column(matrix, j0) + i;
+    const double* l = column(matrix, j0) + j0;
+    const double* inverse = &matrix.inverse_diagonal[static_cast<std::size_t>(j0)];
+    const Rows4 x0 = at<Rows4>(p) * inverse[0];
+    const Rows4 x1 = (at<Rows4>(p + leading) - x0 * l[1]) * inverse[1];
+    const Rows4 x2 = (at<Rows4>(p + 2 * leading) - x0 * l[2] - x1 * l[leading + 2]) * inverse[2];
+    const Rows4 x3 =
+        (at<Rows4>(p + 3 * leading) - x0 * l[3] - x1 * l[leading + 3] - x2 * l[2 * leading + 3]) *
+        inverse[3];
+    at<Rows4>(p) = x0;
+    at<Rows4>(p + leading) = x1;
+    at<Rows4>(p + 2 * leading) = x2;
+    at<Rows4>(p + 3 * leading) = x3;
+}
+
+// Zeros where a chunk of rows or a block of columns reaches past a column's last row.
+void clear_beyond(BandMatrix& matrix, int j) {
+    const int begin = j < matrix.size ? matrix.row_end[static_cast<std::size_t>(j)] : j;
+    const int end = block_end(matrix, j / kBlock * kBlock) + kChunk;
+    std::fill(column(matrix, j) + begin, column(matrix, j) + std::min(matrix.leading, end), 0.0);
+}
+
+}  // namespace
+
+void reset(BandMatrix& matrix, int size) {
+    matrix.size = size;
+    matrix.padded = (size + kBlock - 1) / kBlock * kBlock;
+    matrix.leading = matrix.padded + kChunk;
+    matrix.value.resize(static_cast<std::size_t>(matrix.padded) *
+                        static_cast<std::size_t>(matrix.leading));
+    matrix.inverse_diagonal.resize(static_cast<std::size_t>(matrix.padded));
+    matrix.first.resize(static_cast<std::size_t>(matrix.padded));
+    matrix.row_end.resize(static_cast<std::size_t>(matrix.padded));
+    int end = 0;
+    for (int j = 0; j < size; ++j) {
+        while (end < size && matrix.first[static_cast<std::size_t>(end)] <= j)
+            ++end;
+        matrix.row_end[static_cast<std::size_t>(j)] = end;
+    }
+    for (int j = size; j < matrix.padded; ++j) {
+        matrix.first[static_cast<std::size_t>(j)] = j;
+        matrix.row_end[static_cast<std::size_t>(j)] = j + 1;
+    }
+    for (int j = 0; j < matrix.padded; ++j)
+        clear_beyond(matrix, j);
+    for (int j = size; j < matrix.padded; ++j)
+        column(matrix, j)[j] = 1.0;
+}
+
+void factorize(BandMatrix& matrix) {
+    for (int j0 = 0; j0 < matrix.padded; j0 += kBlock) {
+        double diagonal[kBlock];
+        for (int c = 0; c < kBlock; ++c)
+            diagonal[c] = column(matrix, j0 + c)[j0 + c];
+        const int end = block_end(matrix, j0);
+        for (int i = j0; i < end; i += kChunk)
+            update_chunk(matrix, j0, i);
+        factorize_block(matrix, j0, diagonal);
+        for (int i = j0 + kBlock; i < end; i += kBlock)
+            finish_rows(matrix, j0, i);
+    }
+}
+
+void solve(const BandMatrix& factor, double* x) {
+    const std::ptrdiff_t leading = factor.leading;
+    for (int j0 = 0; j0 < factor.padded; j0 += kBlock) {
+        const double* l = column(factor, j0);
+        for (int c = 0; c < kBlock; ++c) {
+            for (int d = 0; d < c; ++d)
+                x[j0 + c] -= l[d * leading + j0 + c] * x[j0 + d];
+            x[j0 + c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
+        }
+        const int end = block_end(factor, j0);
+        for (int i = j0 + kBlock; i < end; i += kBlock)
+            at<Rows4>(x + i) -= at<Rows4>(l + i) * x[j0] + at<Rows4>(l + leading + i) * x[j0 + 1] +
+                                at<Rows4>(l + 2 * leading + i) * x[j0 + 2] +
+                                at<Rows4>(l + 3 * leading + i) * x[j0 + 3];
+    }
+    for (int j0 = factor.padded - kBlock; j0 >= 0; j0 -= kBlock) {
+        const double* l = column(factor, j0);
+        Rows4 sum0 = Rows4::Zero(), sum1 = sum0, sum2 = sum0, sum3 = sum0;
+        const int end = block_end(factor, j0);
+        for (int i = j0 + kBlock; i < end; i += kBlock) {
+            const Rows4 rows = at<Rows4>(x + i);
+            sum0 += at<Rows4>(l + i) * rows;
+            sum1 += at<Rows4>(l + leading + i) * rows;
+            sum2 += at<Rows4>(l + 2 * leading + i) * rows;
+            sum3 += at<Rows4>(l + 3 * leading + i) * rows;
+        }
+        const double sums[kBlock] = {sum0.sum(), sum1.sum(), sum2.sum(), sum3.sum()};
+        for (int c = kBlock - 1; c >= 0; --c) {
+            x[j0 + c] -= sums[c];
+            for (int d = c + 1; d < kBlock; ++d)
+                x[j0 + c] -= l[c * leading + j0 + d] * x[j0 + d];
+            x[j0 + c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
+        }
+    }
+}
+
+void solve_lower(const BandMatrix& factor, double* x) {
+    for (int j = 0; j < factor.size; ++j) {
+        const double* l = column(factor, j);
+        const Lanes pivot =
+            at<Lanes>(lanes_of(x, j)) * factor.inverse_diagonal[static_cast<std::size_t>(j)];
+        at<Lanes>(lanes_of(x, j)) = pivot;
+        for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
+            at<Lanes>(lanes_of(x, i)) -= pivot * l[i];
+    }
+}
+
+void solve_upper(const BandMatrix& factor, double* x) {
+    for (int j = factor.size - 1; j >= 0; --j) {
+        const double* l = column(factor, j);
+        Lanes sum = at<Lanes>(lanes_of(x, j));
+        for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
+            sum -= at<Lanes>(lanes_of(x, i)) * l[i];
+        at<Lanes>(lanes_of(x, j)) = sum * factor.inverse_diagonal[static_cast<std::size_t>(j)];
+    }
+}
+
+}  // namespace nearfield::fit

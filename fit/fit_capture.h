@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From a capture and its rig to a light field: merge, rectify, solve.
+#pragma once
+
+#include "fit/position_light.h"
+#include "fit/smoothness.h"
+#include "fit/stream.h"
+#include "fit/texel_plan.h"
+#include "formats/files/lightfield.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nearfield::fit {
+
+struct CaptureFitOptions {
+    std::string basis = "bspline";  // on the stage's own grid
+    Weighting weighting = Weighting::Irradiance;
+    std::optional<glm::ivec2>
+        texels;                    // none: as fine as the camera sees, at most 512 along an axis
+    std::optional<Extent> extent;  // of S; none: what is lit
+    double dark_share = 1e-3;      // of the brightest light: what still counts as lit
+    std::optional<double> lambda;  // smoothness; none: by cross-validation
+    /// What rig and basis get wrong, of a texel's brightest position: added to every measurement's
+    /// sigma. Without it dark positions, whose counts are known best, would rule the bright ones.
+    double model_error_rel = 0.003;
+    int replicates = 0;  // bootstrap
+    std::uint64_t seed = 1;
+    bool wants_color = true;  // of a camera with colors; else luminance alone
+    double tile_bytes = 256e6;
+    std::string spool_folder = ".";  // for the rectified pictures while the fit runs
+    std::function<void(double fraction, const std::string& what)> progress;
+};
+
+/// What was seen on the way; for the report.
+struct CaptureFit {
+    LightField lightfield;
+    std::vector<LightField> replicates;
+    FitReport report;
+    SmoothnessCurve smoothness;  // empty where lambda was given
+    double lambda = 0;
+    int positions = 0, missing_positions = 0;
+    double drift_rel = 0;            // largest, of the lamp; corrected
+    double saturated_share = 0;      // of pixels, in all exposures
+    double exposure_chi_square = 0;  // of exposures against each other, by degree of freedom
+    double outside_share = 0;        // of the light in the picture that falls beside the extent
+    double clipped_share = 0;        // of light in channels that came out below zero after color
+    double texel_cells_least = 0;    // texel's least width in cells of the sensor's lattice
+    double resolution_m = 0;         // on S, what can be told apart: a texel or a cell, the larger
+    std::vector<float> chi_square;   // by texel, [j][i], first channel, by degree of freedom
+    double merge_s = 0, solve_s = 0, smoothness_s = 0;
+};
+
+/// Throws Error where the rig is another capture's, positions do not suffice, or all is saturated.
+/// Memory  a position's frames, a tile, and the light field.
+CaptureFit fit_capture(const Measurement& measurement, const CaptureFitOptions& options);
+
+}  // namespace nearfield::fit

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fit/stream.h"
+
+#include "fit/noise.h"
+#include "formats/files/error.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nearfield::fit {
+namespace {
+
+// Where a tile's arrays keep their values.
+struct Layout {
+    std::size_t width = 0, rows = 0, measurements = 0, functions = 0, channels = 0;
+
+    // Of measurement k or image m of `of_each` in a channel.
+    std::size_t at(std::size_t channel,
+                   std::size_t index,
+                   std::size_t of_each,
+                   std::size_t row,
+                   std::size_t i) const {
+        return ((channel * of_each + index) * rows + row) * width + i;
+    }
+    std::size_t texel(std::size_t channel, std::size_t row, std::size_t i) const {
+        return (channel * rows + row) * width + i;
+    }
+};
+
+Layout layout_of(const Design& design, const FitOptions& options, TileRange rows) {
+    return {static_cast<std::size_t>(design.texels.x), static_cast<std::size_t>(rows.row_count),
+            static_cast<std::size_t>(design.measurement_count),
+            static_cast<std::size_t>(design.basis_count()),
+            static_cast<std::size_t>(options.channels)};
+}
+
+// What a thread works with.
+struct Scratch {
+    TexelDesign texel;
+    Workspace work;
+    std::vector<double> b, weight, drawn;
+    std::vector<TexelFit> fit;  // [channel]: where the next texel starts
+    TexelFit replicate;
+};
+
+struct TileJob {
+    const Design& design;
+    const FitOptions& options;
+    const Penalty& penalty;
+    TileRange rows;
+    Layout layout;
+    const TileInput& input;
+    TileResult& result;
+};
+
+void gather(const TileJob& job, std::size_t channel, std::size_t row, std::size_t i, Scratch& s) {
+    s.b.resize(job.layout.measurements);
+    s.weight.resize(job.layout.measurements);
+    for (std::size_t k = 0; k < job.layout.measurements; ++k) {
+        const std::size_t at = job.layout.at(channel, k, job.layout.measurements, row, i);
+        const double variance = job.input.variance[at];
+        if (!(variance > 0.0))
+            throw Error{"bad measurement",
+                        fmt::format("channel {}, position {}, texel ({}, {})", channel, k, i,
+                                    static_cast<std::size_t>(job.rows.first_row) + row),
+                        "variance > 0", fmt::format("{}", variance)};
+        const bool is_missing = std::isinf(variance);
+        s.weight[k] = is_missing ? 0.0 : 1.0 / variance;
+        s.b[k] = is_missing ? 0.0 : job.input.value[at];
+    }
+}
+
+void store(const TileJob& job,
+           std::size_t channel,
+           std::size_t row,
+           std::size_t i,
+           const std::vector<double>& values,
+           std::vector<float>& images) {
+    for (std::size_t m = 0; m < job.layout.functions; ++m)
+        images[job.layout.at(channel, m, job.layout.functions, row, i)] =
+            static_cast<float>(values[m]);
+}
+
+// Fits of what the fitted light would give with other noise.
+void solve_replicates(
+    const TileJob& job, std::size_t channel, std::size_t row, std::size_t i, Scratch& s) {
+    const std::vector<double> residual = s.work.residual;
+    s.drawn.assign(job.layout.measurements, 0.0);
+    const auto texel = (static_cast<std::size_t>(job.rows.first_row) + row) * job.layout.width + i;
+    for (std::size_t r = 0; r < job.result.replicates.size(); ++r) {
+        const NoiseKey key = noise_key(job.options.seed, static_cast<std::uint32_t>(r),
+                                       static_cast<std::uint32_t>(channel), texel);
+        for (std::size_t k = 0; k < s.b.size(); ++k)
+            if (s.weight[k] > 0.0)
+                s.drawn[k] =
+                    s.b[k] + residual[k] +
+                    normal_number(key, static_cast<std::uint32_t>(k)) / std::sqrt(s.weight[k]);
+        s.replicate.is_free = s.fit[channel].is_free;
+        solve_again(s.texel, job.penalty, s.drawn, s.weight, s.work, s.replicate);
+        store(job, channel, row, i, s.replicate.coeffs, job.result.replicates[r]);
+    }
+}
+
+void add_texel(const TexelFit& fit, double kkt_limit, FitReport& report) {
+    ++report.texel_count;
+    report.unconverged_count += fit.kkt_rel <= kkt_limit ? 0 : 1;
+    report.unseen_count += fit.valid_count == 0 ? 1 : 0;
+    report.valid_count += fit.valid_count;
+    report.free_count += fit.free_count;
+    report.factorizations += fit.factorizations;
+    report.kkt_worst = std::max(report.kkt_worst, fit.kkt_rel);
+    const double decade = fit.kkt_rel > 0.0 ? -std::log10(fit.kkt_rel) : 1e9;
+    const double last = static_cast<double>(report.kkt_decades.size()) - 1.0;
+    ++report.kkt_decades[static_cast<std::size_t>(std::clamp(std::floor(decade), 0.0, last))];
+    report.chi_square += fit.chi_square;
+}
+
+// The texels of a row from left to right: each starts from its neighbor's free coefficients, the
+// first from all free, so that nothing depends on tiles or threads.
+FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
+    FitReport report;
+    s.fit.assign(job.layout.channels, {});
+    for (std::size_t i = 0; i < job.layout.width; ++i) {
+        if (i == 0 || job.design.is_varying())
+            fill_texel_design(job.design, static_cast<int>(i),
+                              job.rows.first_row + static_cast<int>(row), s.texel);
+        for (std::size_t c = 0; c < job.layout.channels; ++c) {
+            TexelFit& fit = s.fit[c];
+            gather(job, c, row, i, s);
+            solve_texel(s.texel, job.penalty, s.b, s.weight, job.options.solve, s.work, fit);
+            store(job, c, row, i, fit.coeffs, job.result.coeffs);
+            if (job.options.solve.wants_sigma)
+                store(job, c, row, i, fit.sigma, job.result.sigma);
+            const std::size_t at = job.layout.texel(c, row, i);
+            job.result.chi_square[at] = static_cast<float>(fit.chi_square);
+            job.result.kkt_rel[at] = static_cast<float>(fit.kkt_rel);
+            job.result.valid_count[at] = static_cast<std::int16_t>(fit.valid_count);
+            job.result.free_count[at] = static_cast<std::int16_t>(fit.free_count);
+            add_texel(fit, job.options.kkt_limit, report);
+            solve_replicates(job, c, row, i, s);
+        }
+    }
+    return report;
+}
+
+TileResult empty_result(const Layout& layout, const FitOptions& options, TileRange rows) {
+    const std::size_t texels = layout.channels * layout.rows * layout.width;
+    TileResult result;
+    result.rows = rows;
+    result.coeffs.resize(texels * layout.functions);
+    if (options.solve.wants_sigma)
+        result.sigma.resize(texels * layout.functions);
+    result.replicates.assign(static_cast<std::size_t>(options.replicates),
+                             std::vector<float>(texels * layout.functions));
+    result.chi_square.resize(texels);
+    result.kkt_rel.resize(texels);
+    result.valid_count.resize(texels);
+    result.free_count.resize(texels);
+    return result;
+}
+
+}  // namespace
+
+double FitReport::reduced_chi_square() const {
+    const auto degrees = static_cast<double>(valid_count - free_count);
+    return degrees > 0.0 ? chi_square / degrees : 0.0;
+}
+
+double FitReport::kkt_quantile(double share) const {
+    const double wanted = share * static_cast<double>(texel_count);
+    double count = 0.0;
+    for (std::size_t d = kkt_decades.size(); d-- > 0;) {
+        count += static_cast<double>(kkt_decades[d]);
+        if (count >= wanted)
+            return std::pow(10.0, -static_cast<double>(d));
+    }
+    return 1.0;
+}
+
+FitReport merged(const FitReport& a, const FitReport& b) {
+    FitReport sum = a;
+    sum.texel_count += b.texel_count;
+    sum.unconverged_count += b.unconverged_count;
+    sum.unseen_count += b.unseen_count;
+    sum.valid_count += b.valid_count;
+    sum.free_count += b.free_count;
+    sum.factorizations += b.factorizations;
+    sum.kkt_worst = std::max(a.kkt_worst, b.kkt_worst);
+    for (std::size_t d = 0; d < sum.kkt_decades.size(); ++d)
+        sum.kkt_decades[d] += b.kkt_decades[d];
+    sum.chi_square += b.chi_square;
+    return sum;
+}
+
+void check(const FitOptions& options) {
+    const auto refuse = [](const char* field, const char* expected, double got) {
+        throw Error{"bad option", field, expected, fmt::format("{}", got)};
+    };
+    if (!(options.solve.lambda >= 0.0) || std::isinf(options.solve.lambda))
+        refuse("lambda", "finite, >= 0", options.solve.lambda);
+    if (options.solve.difference_order != 1 && options.solve.difference_order != 2)
+        refuse("difference_order", "1 or 2", options.solve.difference_order);
+    if (options.channels < 1)
+        refuse("channels", ">= 1", options.channels);
+    if (options.replicates < 0)
+        refuse("replicates", ">= 0", options.replicates);
+    if (!(options.tile_bytes > 0.0))
+        refuse("tile_bytes", "> 0", options.tile_bytes);
+}
+
+int tile_rows(const Design& design, const FitOptions& options) {
+    const double images = (options.solve.wants_sigma ? 2.0 : 1.0) + options.replicates;
+    const double row_bytes = sizeof(float) * static_cast<double>(options.channels) *
+                             design.texels.x *
+                             (2.0 * design.measurement_count + images * design.basis_count() + 3.0);
+    return static_cast<int>(
+        std::clamp(options.tile_bytes / row_bytes, 1.0, static_cast<double>(design.texels.y)));
+}
+
+TileResult solve_tile(const Design& design,
+                      const FitOptions& options,
+                      TileRange rows,
+                      const TileInput& input,
+                      FitReport& report) {
+    check(options);
+    const Layout layout = layout_of(design, options, rows);
+    const std::size_t wanted = layout.channels * layout.measurements * layout.rows * layout.width;
+    if (input.value.size() != wanted || input.variance.size() != wanted)
+        throw Error{"bad tile", fmt::format("rows from {}", rows.first_row),
+                    fmt::format("{} values", wanted), fmt::format("{}", input.value.size())};
+    TileResult result = empty_result(layout, options, rows);
+    const Penalty penalty = difference_penalty(design.grid, options.solve.difference_order);
+    const TileJob job{design, options, penalty, rows, layout, input, result};
+    std::vector<FitReport> row_reports(layout.rows);
+    tbb::enumerable_thread_specific<Scratch> scratch;
+    tbb::parallel_for(std::size_t{0}, layout.rows, [&](std::size_t row) {
+        row_reports[row] = solve_row(job, row, scratch.local());
+    });
+    for (const FitReport& row : row_reports)
+        report = merged(report, row);
+    return result;
+}
+
+FitReport solve_lightfield(const Design& design,
+                           const FitOptions& options,
+                           const ReadTile& read,
+                           const WriteTile& write,
+                           const std::function<void(double fraction)>& progress) {
+    check(options);
+    FitReport report;
+    const int step = tile_rows(design, options);
+    for (int first = 0; first < design.texels.y; first += step) {
+        const TileRange rows{first, std::min(step, design.texels.y - first)};
+        write(solve_tile(design, options, rows, read(rows), report));
+        if (progress)
+            progress(static_cast<double>(rows.first_row + rows.row_count) / design.texels.y);
+    }
+    return report;
+}
+
+}  // namespace nearfield::fit
