@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "app/bench/calibration.h"
 #include "app/bench/files.h"
 #include "app/bench/papers.h"
 #include "app/bench/shadows.h"
@@ -24,10 +25,10 @@
 namespace nearfield::app {
 namespace {
 
-enum class What { Accuracy, Shadows, Papers };
+enum class What { Accuracy, Shadows, Papers, Calibration };
 
 constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows",
-                     *kOfPapers = "bench papers";
+                     *kOfPapers = "bench papers", *kOfCalibration = "bench calibration";
 
 struct BenchCommand {
     What what = What::Accuracy;
@@ -36,6 +37,8 @@ struct BenchCommand {
     bench::SweepOptions options;
     bench::ShadowSweepOptions shadows;
     bench::PapersOptions papers;
+    bench::CalibrationSweepOptions calibration;
+    bool quick = false;
 };
 
 LightField read_lamp(const BenchCommand& command) {
@@ -117,6 +120,7 @@ void run_papers(const BenchCommand& command, const std::string& command_line) {
             kOfPapers, "expected neither a file nor --json: it makes its lamps, and writes a CSV");
     bench::PapersOptions options = command.papers;
     options.folder = command.page;
+    options.quick = command.quick;
     ProgressLine progress(kOfPapers);
     const bench::PapersFindings findings = bench::run_papers(
         options,
@@ -131,11 +135,32 @@ void run_papers(const BenchCommand& command, const std::string& command_line) {
                     findings.rows.size(), findings.time_s));
 }
 
+void run_calibration(const BenchCommand& command, const std::string& command_line) {
+    if (!command.input.empty() || command.json)
+        throw CLI::ValidationError(
+            kOfCalibration,
+            "expected neither a file nor --json: it makes its bench, and writes a CSV");
+    bench::CalibrationSweepOptions options = command.calibration;
+    options.quick = command.quick;
+    options.seed = command.options.seed;
+    const std::filesystem::path folder(command.page);
+    bench::make_folder(folder.string());
+    ProgressLine progress(kOfCalibration);
+    const bench::CalibrationFindings findings =
+        bench::run_calibration_sweeps(options, [&](double fraction) { progress.update(fraction); });
+    progress.finish();
+    write_file(bench::as_csv(findings), (folder / "calibration.csv").string());
+    const std::string page = (folder / "calibration.html").string();
+    bench::write_page(findings, {command_line, machine(), options.quick}, page);
+    say(fmt::format("{}: {} settings, {} calibrations each, in {:.0f} s\n", page,
+                    findings.settings.size(), findings.trials, findings.time_s));
+}
+
 // What only others of them take.
 void refuse_foreign_options(const CLI::App& command, const std::string& own) {
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0 && option->get_group().starts_with("bench ") &&
-            option->get_group() != own)
+            option->get_group().find(own) == std::string::npos)
             throw CLI::ValidationError(
                 option->get_name(), fmt::format("expected no option of {}", option->get_group()));
 }
@@ -208,8 +233,6 @@ void add_sweep_options(CLI::App& sub, bench::SweepOptions& options) {
                "settings that would take longer are left out");
     add_number(sub, "--threads", options.threads, 0, 4096, "N",
                "0: all cores; errors are the same");
-    add_number(sub, "--seed", options.seed, std::uint32_t{0},
-               std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
 }
 
 void add_shadow_options(CLI::App& sub, bench::ShadowSweepOptions& options) {
@@ -235,6 +258,8 @@ Bench of_what(What what) {
             return {kOfShadows, run_shadows};
         case What::Papers:
             return {kOfPapers, run_papers};
+        case What::Calibration:
+            return {kOfCalibration, run_calibration};
         case What::Accuracy:
             break;
     }
@@ -246,22 +271,29 @@ Bench of_what(What what) {
 void add_bench(CLI::App& app) {
     auto c = std::make_shared<BenchCommand>();
     CLI::App* sub = add_command(
-        app, "bench", "Measures what accuracy costs in time: samplers and their knobs; shadow maps",
+        app, "bench",
+        "Measures what accuracy costs: samplers and their knobs, shadow maps, calibration",
         {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
          "nearfield bench accuracy --samplers sum,pdis --k 16,63,1000 -o pdis.html",
-         "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers"});
-    add_choice(*sub, "what", c->what,
-               {{"accuracy", What::Accuracy}, {"shadows", What::Shadows}, {"papers", What::Papers}},
-               "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene; "
-               "papers: a published paper's figures again, on lamps of its sizes")
+         "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers",
+         "nearfield bench calibration -o calibration"});
+    add_choice(
+        *sub, "what", c->what,
+        {{"accuracy", What::Accuracy},
+         {"shadows", What::Shadows},
+         {"papers", What::Papers},
+         {"calibration", What::Calibration}},
+        "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene; "
+        "papers: a published paper's figures again, on lamps of its sizes; calibration: errors "
+        "of a calibrated bench against noise, boards, bends, tilts, lens models")
         ->required();
     sub->add_option(
            "input", c->input,
            "accuracy: luminaire or light field, .exr, by default the reference lamp (nearfield "
            "simulate reference); shadows: scene, .gltf or .glb")
         ->type_name("FILE");
-    sub->add_option("-o,--output", c->page, "page to write, .html; papers: folder")
+    sub->add_option("-o,--output", c->page, "page to write, .html; papers, calibration: folder")
         ->required()
         ->type_name("FILE");
     sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
@@ -275,8 +307,17 @@ void add_bench(CLI::App& app) {
     add_sweep_options(*sub, c->options);
     sub->option_defaults()->group(kOfShadows);
     add_shadow_options(*sub, c->shadows);
+    sub->option_defaults()->group(fmt::format("{}, {}", kOfAccuracy, kOfCalibration));
+    add_number(*sub, "--seed", c->options.seed, std::uint32_t{0},
+               std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
+    sub->option_defaults()->group(fmt::format("{}, {}", kOfPapers, kOfCalibration));
+    sub->add_flag("--quick", c->quick,
+                  "small lamps and frames, few calibrations: seconds, no conclusions");
+    sub->option_defaults()->group(kOfCalibration);
+    add_number(*sub, "--trials", c->calibration.trials, 2, 100000, "N",
+               "calibrations of each setting, 20 and of quick runs 3 by default")
+        ->default_str("");
     sub->option_defaults()->group(kOfPapers);
-    sub->add_flag("--quick", c->papers.quick, "small lamps and frames: seconds, no conclusions");
     add_number(*sub, "--frame-px", c->papers.frame_px, 16, 4096, "PX",
                "width of the samplers' frames, 240 and of quick runs 32 by default; others follow")
         ->default_str("");

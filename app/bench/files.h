@@ -26,4 +26,7 @@ std::string as_json(const Findings& findings, const Setup& setup);
 /// One self-contained page, without scripts.
 void write_page(const Findings& findings, const Setup& setup, const std::string& path);
 
+/// Where there is none. Throws Error.
+void make_folder(const std::string& folder);
+
 }  // namespace nearfield::bench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/papers.h"
 
+#include "app/bench/files.h"
 #include "app/bench/papers_run.h"
 #include "formats/files/error.h"
 #include "formats/files/provenance.h"
@@ -36,13 +37,6 @@ constexpr int kWidth_px = 240, kQuickWidth_px = 32;
 // 4 : 3, as the paper's.
 glm::ivec2 frame_of(int width_px) {
     return {width_px, 3 * width_px / 4};
-}
-
-void make_folder(const std::string& folder) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure)
-        throw Error("cannot make folder", folder, {}, failure.message());
 }
 
 // Scenes that users can render again.

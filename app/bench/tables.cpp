@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/files.h"
 #include "app/bench/summary.h"
+#include "formats/files/error.h"
 #include "formats/files/provenance.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,6 +113,13 @@ std::string as_json(const Findings& findings, const Setup& setup) {
     for (const SamplerSummary& summary : summarize(findings))
         json["summary"].push_back(as_json(summary));
     return json.dump(1) + "\n";
+}
+
+void make_folder(const std::string& folder) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure)
+        throw Error("cannot make folder", folder, {}, failure.message());
 }
 
 }  // namespace nearfield::bench
