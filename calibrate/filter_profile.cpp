@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kBesideSupport_pitches = 0.5;  // pixels there say where the profile ends
 constexpr double kLeastJump = 0.005, kJumpSigmas = 3.0;
-constexpr int kMostSteps = 60;
+constexpr int kMostSteps = 100;
 constexpr int kProfileBins = 40;
 
 struct FilterFit {
@@ -54,7 +54,8 @@ FilterFit minimize(const std::vector<FilterSample>& samples,
                    FilterParameters start,
                    glm::dvec2 pitch_m,
                    const std::vector<Condition>& conditions) {
-    constexpr double kDone = 1e-9;  // of chi-square
+    constexpr double kDone = 1e-2;      // of chi-square: a tenth of a sigma
+    constexpr double kUndamped = 1e3;   // beyond, a small gain may be that of a small step
     FilterFit fit{std::move(start), {}, {}, 1.0};
     fit.normal = normal_equations(samples, fit.parameters, pitch_m, conditions);
     double damping = 1e-3;
@@ -72,7 +73,7 @@ FilterFit minimize(const std::vector<FilterSample>& samples,
             is_done = damping > 1e8;
             continue;
         }
-        is_done = before - after < kDone * (after + 1.0);
+        is_done = before - after < kDone && damping < kUndamped;
         damping = std::max(damping * 0.1, 1e-12);
         fit.parameters = std::move(next);
         fit.normal = std::move(then);

@@ -101,7 +101,9 @@ void whiten_filters(Fitted& fitted, const Observations& observations) {
 }
 
 // The noise with which residuals of centers from their grid are as large as they are: chi^2 over
-// degrees of freedom is 1 (the grid's six numbers fit away as many).
+// degrees of freedom is 1 (the grid's six numbers fit away as many). A sigma that comes from few
+// residuals is itself uncertain: what it predicts follows Student's t, whose variance is larger by
+// freedom / (freedom - 2); two degrees less give that.
 double step_sigma_of(const Fitted& fitted, const Observations& observations) {
     if (!can_tell_step_sigma(observations))
         return 0.0;
@@ -117,7 +119,7 @@ double step_sigma_of(const Fitted& fitted, const Observations& observations) {
         covariance_m2.push_back(seen_covariance_m2(fitted.bundle, filter));
         largest_m2 += squared_length(residual_m.back());
     }
-    const double freedom = 2.0 * static_cast<double>(residual_m.size()) - 6.0;
+    const double freedom = 2.0 * static_cast<double>(residual_m.size()) - 6.0 - 2.0;
     const auto chi2 = [&](double step2_m2) {
         double sum = 0.0;
         for (std::size_t i = 0; i < residual_m.size(); ++i)

@@ -16,7 +16,7 @@
 namespace nearfield::fit {
 namespace {
 
-struct Scratch {
+struct FoldScratch {
     TexelDesign texel;
     Workspace work;
     TexelFit fit;
@@ -42,7 +42,7 @@ struct RowSums {
 };
 
 bool read_texel(
-    const Question& q, std::size_t channel, std::size_t row, std::size_t i, Scratch& s) {
+    const Question& q, std::size_t channel, std::size_t row, std::size_t i, FoldScratch& s) {
     const auto count = static_cast<std::size_t>(q.design.measurement_count);
     const auto width = static_cast<std::size_t>(q.design.texels.x);
     const auto height = static_cast<std::size_t>(q.rows.row_count);
@@ -61,7 +61,7 @@ bool read_texel(
 }
 
 // Chi-square of the measurements of all folds, each foretold by the others.
-double foretold_chi_square(const Question& q, double lambda, Scratch& s) {
+double foretold_chi_square(const Question& q, double lambda, FoldScratch& s) {
     SolveOptions solve = q.options.solve;
     solve.lambda = lambda;
     solve.wants_sigma = false;
@@ -81,7 +81,7 @@ double foretold_chi_square(const Question& q, double lambda, Scratch& s) {
     return sum;
 }
 
-RowSums ask_row(const Question& q, std::size_t row, Scratch& s) {
+RowSums ask_row(const Question& q, std::size_t row, FoldScratch& s) {
     const std::size_t count = q.smoothness.lambdas.size();
     RowSums sums{std::vector<double>(count, 0.0), std::vector<double>(count * count, 0.0), 0, 0};
     std::vector<double> chi_square(count);
@@ -192,7 +192,7 @@ SmoothnessCurve cross_validate(const Design& design,
         folds_of(design.measurement_count, smoothness.folds, smoothness.seed);
     const Question question{design, options, smoothness, penalty, fold, rows, input};
     std::vector<RowSums> row_sums(static_cast<std::size_t>(rows.row_count));
-    tbb::enumerable_thread_specific<Scratch> scratch;
+    tbb::enumerable_thread_specific<FoldScratch> scratch;
     tbb::parallel_for(std::size_t{0}, row_sums.size(), [&](std::size_t row) {
         row_sums[row] = ask_row(question, row, scratch.local());
     });
