@@ -15,8 +15,6 @@
 namespace nearfield::app {
 namespace {
 
-using sample_data::Bench;
-using sample_data::Places;
 using sample_data::operator*;
 
 double value_at_center(const Profile& profile) {
@@ -25,8 +23,8 @@ double value_at_center(const Profile& profile) {
 
 // The real bench in the rig's slab frame.
 struct RealBench {
-    const Bench& bench;
-    Places places;
+    const sample_data::Bench& bench;
+    sample_data::Places places;
     Rigid bench_from_slab;
 
     glm::dvec3 filter_center_slab(std::size_t position) const {
@@ -186,7 +184,7 @@ void summarize(Closure& closure) {
 
 }  // namespace
 
-Closure closure_of(const Bench& bench,
+Closure closure_of(const sample_data::Bench& bench,
                    double time_s,
                    const rig::Rig& rig,
                    const fit::CaptureFit& fit,

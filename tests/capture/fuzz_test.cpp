@@ -55,9 +55,9 @@ TEST(CaptureFuzz, PlansAreReadOrRefused) {
     plan.photometer.emplace();
     fuzz(json_of(plan).dump(2), [](const std::string& text) {
         const Json document = parse_json(text, "plan.json");
-        const Plan plan = plan_from({document, "plan.json"});
-        if (!plan.bracket.exposures_us.empty())  // else they are still to be metered
-            shots_of(plan);
+        const Plan damaged = plan_from({document, "plan.json"});
+        if (!damaged.bracket.exposures_us.empty())  // else they are still to be metered
+            shots_of(damaged);
     });
 }
 
