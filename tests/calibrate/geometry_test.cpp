@@ -56,9 +56,10 @@ TEST_P(EveryModel, PerfectCornersAreRecovered) {
     for (const rig::Parameter& parameter : found.parameters) {
         const double value = test::true_parameter(truth, parameter.name, slab_of(found));
         // Numbers of a rational lens are nearly interchangeable: what they do is recovered.
-        if (GetParam() != LensModel::Brown8 || parameter.name[0] != 'k')
+        if (GetParam() != LensModel::Brown8 || parameter.name[0] != 'k') {
             EXPECT_NEAR(parameter.value, value, 1e-9 * std::max(1.0, std::abs(value)))
                 << parameter.name;
+        }
     }
     for (const glm::dvec2 at_px : found.uncertainty.at_px) {
         const auto seen = rig::project_px(found.lens, *rig::ray_camera(truth.lens, at_px));

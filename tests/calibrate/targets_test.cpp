@@ -87,7 +87,7 @@ TEST(Targets, CornersOfTheFarBenchAreFoundThroughItsMosaic) {
 
 // A chessboard by 8 x 8 points a pixel, through a pose and a pinhole; its corners are known.
 struct DrawnBoard {
-    capture::BoardPlan board{capture::BoardKind::Chessboard, {10, 7}, 0.025, 0.0, {}};
+    capture::BoardPlan board{capture::BoardKind::Chessboard, {10, 7}, 0.025, 0.0, std::string()};
     double focal_px = 800.0;
     glm::dvec2 center_px{258.3, 254.1};
     Rigid camera_from_board{test::turn_xyz({0.3, -0.4, 0.2}), {-0.12, -0.06, 0.55}};
@@ -139,7 +139,8 @@ TEST(Targets, AChessboardsCornersAreFound) {
 
 TEST(Targets, NoBoardIsAnOrdinaryNo) {
     capture::Frame gray{{320, 240}, 1, 12, std::vector<std::uint16_t>(76800, 1000)};
-    EXPECT_TRUE(find_board(gray, "mono", DrawnBoard{}.board).empty());
+    const DrawnBoard drawn;
+    EXPECT_TRUE(find_board(gray, "mono", drawn.board).empty());
     EXPECT_TRUE(find_board(gray, "rggb", board_of(target_bench("bench_near.json"))).empty());
 }
 
