@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -18,12 +17,8 @@
 namespace nearfield::calibrate {
 namespace {
 
-// NEARFIELD_SHARED_DATA: a folder with capture/chessboard and capture/aruco_photos.
 std::filesystem::path photographs(const std::string& name) {
-    const char* folder =
-        std::getenv("NEARFIELD_SHARED_DATA");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-    return std::filesystem::path(folder != nullptr ? folder : "/work/shared/data") / "capture" /
-           name;
+    return std::filesystem::path(NEARFIELD_SOURCE_DIR) / "../shared/data/capture" / name;
 }
 
 capture::Frame photograph(const std::filesystem::path& path) {

@@ -17,7 +17,8 @@
 namespace nearfield::test {
 namespace {
 
-const std::string kMemorial = "/work/shared/data/capture/debevec_memorial/";
+const std::string kMemorial =
+    std::string(NEARFIELD_SOURCE_DIR) + "/../shared/data/capture/debevec_memorial/";
 
 /// 8-bit values of a camera that takes the root of light: gamma 2.2.
 std::vector<calibrate::Photograph> gamma_bracket(const std::vector<double>& light) {
