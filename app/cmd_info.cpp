@@ -2,8 +2,10 @@
 #include "app/commands.h"
 #include "app/describe.h"
 #include "app/describe_capture.h"
+#include "app/describe_rig.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "formats/files/read_file.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -53,8 +55,18 @@ void explain_capture(const InfoCommand& command) {
         throw CLI::RuntimeError(3);
 }
 
-void run(const InfoCommand& command) {
-    if (capture::holds_capture(command.input))
+// The rig as its file says it; --verify: its maps are its own.
+void explain_rig(const InfoCommand& command) {
+    const rig::Rig rig = rig::read_rig(command.input);
+    if (command.verify && rig.radiometry)
+        rig::read_maps(command.input);
+    print(command.json ? read_file(command.input) : rig_text(rig));
+}
+
+void run_info(const InfoCommand& command) {
+    if (command.input.ends_with(".json"))
+        explain_rig(command);
+    else if (capture::holds_capture(command.input))
         explain_capture(command);
     else if (holds_luminaire(command.input))
         explain_luminaire(command, read_kind(command.input));
@@ -70,7 +82,7 @@ void add_info(CLI::App& app) {
                                 {"nearfield info headlight.luminaire.exr --verify",
                                  "nearfield info headlight.luminaire.exr --json"});
     sub->add_option("file", c->input,
-                    "light field, luminaire or picture, .exr; or a capture's folder")
+                    "light field, luminaire or picture, .exr; a rig, .json; or a capture's folder")
         ->required()
         ->type_name("FILE");
     sub->add_flag(
@@ -78,7 +90,7 @@ void add_info(CLI::App& app) {
         "check every stored table against the coefficients, or every frame against its checksum; "
         "exit 3 if one differs");
     sub->add_flag("--json", c->json, "as JSON (docs/formats.md)");
-    sub->callback([c] { run(*c); });
+    sub->callback([c] { run_info(*c); });
 }
 
 }  // namespace nearfield::app
