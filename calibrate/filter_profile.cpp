@@ -54,8 +54,8 @@ FilterFit minimize(const std::vector<FilterSample>& samples,
                    FilterParameters start,
                    glm::dvec2 pitch_m,
                    const std::vector<Condition>& conditions) {
-    constexpr double kDone = 1e-2;      // of chi-square: a tenth of a sigma
-    constexpr double kUndamped = 1e3;   // beyond, a small gain may be that of a small step
+    constexpr double kDone = 1e-2;     // of chi-square: a tenth of a sigma
+    constexpr double kUndamped = 1e3;  // beyond, a small gain may be that of a small step
     FilterFit fit{std::move(start), {}, {}, 1.0};
     fit.normal = normal_equations(samples, fit.parameters, pitch_m, conditions);
     double damping = 1e-3;

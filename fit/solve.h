@@ -65,7 +65,8 @@ struct Workspace {
 
 /// Fits b with weights w, [k]. The texel's G may be shared by all channels.
 /// Throws Error if a value is not finite or a weight is negative or not finite.
-/// Cost    11 x 9 positions, B-splines, 4.3 factorizations: 90 to 150 us of a core on a busy machine
+/// Cost    11 x 9 positions, B-splines, 4.3 factorizations: 90 to 150 us of a core on a busy
+/// machine
 ///         (tests/bench/fit_bench.cpp); O(n band^2) a factorization for larger grids.
 void solve_texel(const TexelDesign& texel,
                  const Penalty& penalty,

@@ -70,7 +70,8 @@ int tile_rows(const Design& design, const FitOptions& options);
 
 /// One tile. Throws Error if the input's sizes do not fit, a value is not finite where its variance
 /// is, or a variance is NaN or not positive.
-/// Cost    that of solve_texel for every texel and channel; sigma doubles it, a replicate adds half.
+/// Cost    that of solve_texel for every texel and channel; sigma doubles it, a replicate adds
+/// half.
 ///         Parallel over rows (TBB).
 TileResult solve_tile(const Design& design,
                       const FitOptions& options,
