@@ -49,7 +49,7 @@ void take_stage(LabDemoResult& result, const std::string& name, const Work& work
 std::string write_plan(const LabDemoOptions& options) {
     Json plan = parse_json(read_file(options.plan), options.plan);
     plan["camera"]["device"] = options.address;
-    const std::string path = in_folder(options, "plan.json");
+    std::string path = in_folder(options, "plan.json");
     write_file(plan.dump(2) + "\n", path);
     return path;
 }

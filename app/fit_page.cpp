@@ -110,11 +110,9 @@ HeatMap seen_from(const Slab& slab, glm::dvec2 tangent) {
 Section lamp_section(const Slab& slab, const OnS& on_s) {
     Section section{"The lamp", {}, {}, {}, {}};
     const auto brightest = std::max_element(on_s.lx.begin(), on_s.lx.end()) - on_s.lx.begin();
-    const glm::dvec2 hot_m =
-        slab.s_min_m + (glm::dvec2(static_cast<double>(brightest % slab.texels.x),
-                                   static_cast<double>(brightest / slab.texels.x)) +
-                        0.5) *
-                           slab.texel_m();
+    const auto column = static_cast<int>(brightest) % slab.texels.x;
+    const auto row = static_cast<int>(brightest) / slab.texels.x;
+    const glm::dvec2 hot_m = slab.s_min_m + (glm::dvec2(column, row) + 0.5) * slab.texel_m();
     const glm::dvec2 hot = (hot_m - slab.u_center_m) / slab.delta_m;
     const double spread = 0.35 * (slab.s_max_m.x - slab.s_min_m.x) / slab.delta_m;
     for (const glm::dvec2 offset : {glm::dvec2(0.0), glm::dvec2(-spread, 0.0),
