@@ -91,6 +91,7 @@ VertexArray make_array(const Buffer& positions, const Buffer& indices) {
 
 Buffer upload_materials(Device& device, const std::vector<shared::Brdf>& brdfs) {
     std::vector<MaterialBlock> blocks;
+    blocks.reserve(brdfs.size());
     for (const shared::Brdf& brdf : brdfs)
         blocks.push_back({glm::vec4(brdf.diffuse, brdf.exponent),
                           glm::vec4(brdf.specular, static_cast<float>(brdf.kind)),

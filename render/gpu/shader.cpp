@@ -86,7 +86,7 @@ Shader compile(GLenum stage, const std::string& path, const Defines& defines) {
     throw Error{"a shader does not compile", path, "", with_paths(log, resolved.files)};
 }
 
-Program link(const std::string& name, std::vector<Shader> shaders) {
+Program link(const std::string& name, const std::vector<Shader>& shaders) {
     Program program(glCreateProgram());
     for (const Shader& shader : shaders)
         glAttachShader(program.id(), shader.id());
@@ -116,7 +116,7 @@ ResolvedShader resolve(const std::string& path, const Defines& defines) {
 Program link_compute(const std::string& path, const Defines& defines) {
     std::vector<Shader> shaders;
     shaders.push_back(compile(GL_COMPUTE_SHADER, path, defines));
-    return link(path, std::move(shaders));
+    return link(path, shaders);
 }
 
 Program link_draw(const std::string& vertex_path,
@@ -125,7 +125,7 @@ Program link_draw(const std::string& vertex_path,
     std::vector<Shader> shaders;
     shaders.push_back(compile(GL_VERTEX_SHADER, vertex_path, defines));
     shaders.push_back(compile(GL_FRAGMENT_SHADER, fragment_path, defines));
-    return link(vertex_path + ", " + fragment_path, std::move(shaders));
+    return link(vertex_path + ", " + fragment_path, shaders);
 }
 
 void dispatch_2d(const Program& program, int width, int height) {

@@ -87,9 +87,10 @@ std::size_t draw_view(const ShadowPass& pass,
         const DrawRange& range = scene.instances[i];
         if (!is_caster[i] || range.indices == 0 || is_out_of_view(slab, view, range))
             continue;
-        // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes an offset as a pointer.
-        const auto* first =
-            reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t));
+        const std::size_t offset = range.first_index * sizeof(std::uint32_t);
+        // OpenGL takes an offset as a pointer.
+        // NOLINTNEXTLINE(performance-no-int-to-ptr)
+        const auto* first = reinterpret_cast<const void*>(offset);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.indices), GL_UNSIGNED_INT, first);
         indices += range.indices;
     }

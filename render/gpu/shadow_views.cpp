@@ -86,6 +86,7 @@ std::vector<std::vector<ShadowCell>> cluster(const std::vector<ShadowCell>& cell
     std::vector<std::vector<ShadowCell>> groups = group(cells, choose(cells, most));
     for (int round = 0; round < kRounds; ++round) {
         std::vector<ShadowCell> kept;
+        kept.reserve(groups.size());
         for (const std::vector<ShadowCell>& members : groups)
             kept.push_back(merge(members));
         groups = group(cells, kept);
