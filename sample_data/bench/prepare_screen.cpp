@@ -200,6 +200,7 @@ std::vector<double> strayed_light(const LensLight& light, const SeenColors& colo
     std::vector<double> blocked(positions, 0.0);
     for (int row = 0; row < kParts.y; ++row) {
         std::vector<glm::dvec3> points;
+        points.reserve(static_cast<std::size_t>(kParts.x));
         for (int column = 0; column < kParts.x; ++column)
             points.push_back(
                 screen_point(*light.places, min_m + (glm::dvec2(column, row) + 0.5) * step_m));
