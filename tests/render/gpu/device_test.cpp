@@ -99,7 +99,7 @@ TEST_F(DeviceTest, RefusesBuffersThatShadersCannotRead) {
 }
 
 TEST_F(DeviceTest, TexturesKeepFloatsBitForBit) {
-    std::vector<float> values(5 * 3);
+    std::vector<float> values(std::size_t{5} * 3);
     std::iota(values.begin(), values.end(), 1.0e-30F);
     values[7] = 3.3e38F;
     const Texture texture = make_texture(device(), "t", GL_R32F, {5, 3});

@@ -12,7 +12,7 @@ namespace nearfield::render::gpu {
 namespace {
 
 constexpr glm::ivec2 kSizePx(13, 9);  // no multiple of a group's 8 x 8
-constexpr std::size_t kPixels = 13 * 9;
+constexpr std::size_t kPixels = std::size_t{13} * 9;
 
 class FilmTest : public GlTest {
   protected:

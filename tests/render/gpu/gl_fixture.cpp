@@ -3,17 +3,17 @@
 
 namespace nearfield::render::gpu {
 
-std::unique_ptr<HeadlessContext> GlTest::context_;
-std::unique_ptr<Device> GlTest::device_;
+std::unique_ptr<HeadlessContext> GlTest::shared_context;
+std::unique_ptr<Device> GlTest::shared_device;
 
 void GlTest::SetUpTestSuite() {
-    context_ = std::make_unique<HeadlessContext>();
-    device_ = std::make_unique<Device>();
+    shared_context = std::make_unique<HeadlessContext>();
+    shared_device = std::make_unique<Device>();
 }
 
 void GlTest::TearDownTestSuite() {
-    device_.reset();
-    context_.reset();
+    shared_device.reset();
+    shared_context.reset();
 }
 
 }  // namespace nearfield::render::gpu

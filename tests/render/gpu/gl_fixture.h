@@ -17,11 +17,11 @@ class GlTest : public testing::Test {
     static void SetUpTestSuite();
     static void TearDownTestSuite();
 
-    Device& device() { return *device_; }
+    Device& device() { return *shared_device; }
 
   private:
-    static std::unique_ptr<HeadlessContext> context_;
-    static std::unique_ptr<Device> device_;
+    static std::unique_ptr<HeadlessContext> shared_context;
+    static std::unique_ptr<Device> shared_device;
 };
 
 }  // namespace nearfield::render::gpu

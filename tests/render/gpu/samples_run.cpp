@@ -79,7 +79,7 @@ shared::Brdf lambert() {
 }
 
 std::vector<SurfacePoint> lit_points(const Slab& slab, glm::ivec2 size_px, std::uint64_t seed) {
-    support::Random random(seed);
+    support::Random random{seed};
     const glm::dvec2 u_half = 0.5 * glm::dvec2(slab.grid) * slab.pitch_m;
     std::vector<SurfacePoint> points;
     for (int k = 0; k < size_px.x * size_px.y; ++k) {
