@@ -116,13 +116,16 @@ TEST_F(ShadowTest, LitPlanesHaveNoAcne) {
 /// Points of the floor about the lamp's axis, whatever hides them from the camera.
 Surfaces floor_points(Device& device) {
     std::vector<SurfacePoint> points;
-    for (int k = 0; k < 64; ++k)
+    points.reserve(64);
+    for (int k = 0; k < 64; ++k) {
+        const int column = k % 8, row = k / 8;
         points.push_back(
-            {{0.02F * static_cast<float>(k % 8), 0.02F * static_cast<float>(k / 8), 0.0F},
+            {{0.02F * static_cast<float>(column), 0.02F * static_cast<float>(row), 0.0F},
              {0.0F, 0.0F, 1.0F},
              {0.0F, 0.0F, 0.0F},
              0,
              0.0F});
+    }
     return upload_surfaces(device, {8, 8}, points, {0, 0, 1}, false);
 }
 

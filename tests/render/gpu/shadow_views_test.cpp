@@ -64,7 +64,7 @@ TEST(ShadowCells, AreThoseThatSendLight) {
         }
     }
     // Images of columns 0 and 1 are dark: cells 0 and 1 of 7 columns are theirs alone.
-    for (std::size_t k = 0; k < 7 * 6; ++k)
+    for (std::size_t k = 0; k < std::size_t{7} * 6; ++k)
         EXPECT_EQ(lit.count(k), k % 7 >= 2 ? 1U : 0U) << k;
     EXPECT_EQ(slab.image_count(), 20);
 }

@@ -267,6 +267,7 @@ TEST(LightSumVariants, PassTheReferenceCompiler) {
                 for (const char* program : {"BY_MOMENTS", "BY_PIECES"}) {
                     const Defines defines{shadows, way, weighting, program, "HAS_COLOR"};
                     std::ofstream("sum.comp") << resolve("render/shaders/sum.comp", defines).text;
+                    // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread runs here.
                     EXPECT_EQ(std::system("glslangValidator sum.comp > sum.log"), 0)
                         << std::ifstream("sum.log").rdbuf();
                 }
