@@ -15,24 +15,27 @@ constexpr int kStrayBlock_px = 8;  // averaged, so that noise does not look like
 constexpr double kDarkestShare = 0.05;
 constexpr float kSeesScreen = 0.02F;
 
-// Means of blocks; those without a usable pixel are not a number.
+// The mean of a block's usable pixels; not a number where there is none.
+float block_mean(const std::vector<float>& light, const PixelLayout& layout, glm::ivec2 first) {
+    const glm::ivec2 end = glm::min(first + kStrayBlock_px, layout.size_px);
+    double sum = 0, count = 0;
+    for (int y = first.y; y < end.y; ++y) {
+        for (int x = first.x; x < end.x; ++x) {
+            const float value = light[layout.value_at(x, y)];
+            if (std::isnan(value))
+                continue;
+            sum += value;
+            count += 1.0;
+        }
+    }
+    return count > 0.0 ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
+}
+
 std::vector<float> block_means(const std::vector<float>& light, const PixelLayout& layout) {
     std::vector<float> means;
     for (int top = 0; top < layout.size_px.y; top += kStrayBlock_px) {
-        for (int left = 0; left < layout.size_px.x; left += kStrayBlock_px) {
-            double sum = 0, count = 0;
-            for (int y = top; y < std::min(top + kStrayBlock_px, layout.size_px.y); ++y) {
-                for (int x = left; x < std::min(left + kStrayBlock_px, layout.size_px.x); ++x) {
-                    const float value = light[layout.value_at(x, y)];
-                    if (std::isnan(value))
-                        continue;
-                    sum += value;
-                    count += 1.0;
-                }
-            }
-            means.push_back(count > 0.0 ? static_cast<float>(sum / count)
-                                        : std::numeric_limits<float>::quiet_NaN());
-        }
+        for (int left = 0; left < layout.size_px.x; left += kStrayBlock_px)
+            means.push_back(block_mean(light, layout, {left, top}));
     }
     return means;
 }

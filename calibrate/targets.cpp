@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/targets.h"
 
+#include "calibrate/corner_fit.h"
+#include "calibrate/dictionaries.h"
 #include "calibrate/gray_picture.h"
 #include "formats/files/error.h"
 
@@ -9,43 +11,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
+#include <numeric>
+#include <optional>
 
 namespace nearfield::calibrate {
 namespace {
-
-constexpr std::array<std::pair<const char*, int>, 17> kDictionaries = {{
-    {"4x4_50", cv::aruco::DICT_4X4_50},
-    {"4x4_100", cv::aruco::DICT_4X4_100},
-    {"4x4_250", cv::aruco::DICT_4X4_250},
-    {"4x4_1000", cv::aruco::DICT_4X4_1000},
-    {"5x5_50", cv::aruco::DICT_5X5_50},
-    {"5x5_100", cv::aruco::DICT_5X5_100},
-    {"5x5_250", cv::aruco::DICT_5X5_250},
-    {"5x5_1000", cv::aruco::DICT_5X5_1000},
-    {"6x6_50", cv::aruco::DICT_6X6_50},
-    {"6x6_100", cv::aruco::DICT_6X6_100},
-    {"6x6_250", cv::aruco::DICT_6X6_250},
-    {"6x6_1000", cv::aruco::DICT_6X6_1000},
-    {"7x7_50", cv::aruco::DICT_7X7_50},
-    {"7x7_100", cv::aruco::DICT_7X7_100},
-    {"7x7_250", cv::aruco::DICT_7X7_250},
-    {"7x7_1000", cv::aruco::DICT_7X7_1000},
-    {"original", cv::aruco::DICT_ARUCO_ORIGINAL},
-}};
-
-int dictionary_of(const std::string& name) {
-    const auto found = std::find_if(kDictionaries.begin(), kDictionaries.end(),
-                                    [&](const auto& entry) { return name == entry.first; });
-    if (found == kDictionaries.end())
-        throw Error{"cannot look for the board", "dictionary", "4x4_50 ... 7x7_1000, original",
-                    "'" + name + "'"};
-    return found->second;
-}
 
 // OpenCV's cornerSubPix counts from the first pixel's center, we from its corner. Everything here
 // is OpenCV's until it comes through this function.
@@ -58,6 +31,44 @@ void refine(const cv::Mat& gray, std::vector<cv::Point2f>& corners, int half_win
     cv::cornerSubPix(gray, corners, {half_window_px, half_window_px}, {-1, -1}, done);
 }
 
+// The board around a corner as an affine picture, from the corners beside it: three at least that
+// are not in line.
+std::optional<glm::dmat2> px_from_squares(const capture::BoardPlan& board,
+                                          const std::vector<int>& ids,
+                                          const std::vector<cv::Point2f>& corners,
+                                          std::size_t middle) {
+    glm::dmat2 squares2(0.0), px_squares(0.0);  // sums of outer products
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const glm::dvec2 apart =
+            (corner_board_m(board, ids[i]) - corner_board_m(board, ids[middle])) / board.square_m;
+        if (glm::length(apart) > 1.5)
+            continue;
+        const cv::Point2f px = corners[i] - corners[middle];
+        squares2 += glm::outerProduct(apart, apart);
+        px_squares += glm::outerProduct(glm::dvec2(px.x, px.y), apart);
+    }
+    if (glm::determinant(squares2) < 0.5)
+        return std::nullopt;
+    return px_squares * glm::inverse(squares2);
+}
+
+// Where a corner cannot be fitted it stays.
+void fit_corners(const cv::Mat& values,
+                 const capture::BoardPlan& board,
+                 const std::vector<int>& ids,
+                 std::vector<cv::Point2f>& corners) {
+    const std::vector<cv::Point2f> starts = corners;
+    const double clear = 0.5 * (1.0 - board.marker_m / board.square_m);  // of a chessboard: all
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const auto local = px_from_squares(board, ids, starts, i);
+        if (!local)
+            continue;
+        const auto found = fit_corner(values, {{starts[i].x, starts[i].y}, *local, clear});
+        if (found)
+            corners[i] = cv::Point2f(static_cast<float>(found->x), static_cast<float>(found->y));
+    }
+}
+
 std::vector<Corner> find_chessboard(const GrayPicture& picture, const capture::BoardPlan& board) {
     const cv::Size inner(board.squares.x - 1, board.squares.y - 1);
     std::vector<cv::Point2f> found;
@@ -66,9 +77,12 @@ std::vector<Corner> find_chessboard(const GrayPicture& picture, const capture::B
         return {};
     constexpr int kHalfWindow_px = 5;
     refine(picture.values, found, kHalfWindow_px);
+    std::vector<int> ids(found.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    fit_corners(picture.values, board, ids, found);
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < found.size(); ++i)
-        corners.push_back(corner_from_opencv(board, static_cast<int>(i), found[i]));
+        corners.push_back(corner_from_opencv(board, ids[i], found[i]));
     return corners;
 }
 
@@ -114,7 +128,7 @@ double clear_of_markers_px(const capture::BoardPlan& board,
 }
 
 std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::BoardPlan& board) {
-    const auto dictionary = cv::aruco::getPredefinedDictionary(dictionary_of(board.dictionary));
+    const auto dictionary = cv::aruco::getPredefinedDictionary(opencv_dictionary(board.dictionary));
     const auto layout = cv::aruco::CharucoBoard::create(
         board.squares.x, board.squares.y, static_cast<float>(board.square_m),
         static_cast<float>(board.marker_m), dictionary);
@@ -141,6 +155,7 @@ std::vector<Corner> find_charuco(const GrayPicture& picture, const capture::Boar
                                        double(kLeastHalf_px), double(kMostHalf_px));
     refine(smooth, found, static_cast<int>(clear_px) + 1);
     refine(smooth, found, static_cast<int>(clear_px));
+    fit_corners(picture.values, board, ids, found);
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < found.size(); ++i)
         corners.push_back(corner_from_opencv(board, ids[i], found[i]));

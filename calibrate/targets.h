@@ -18,8 +18,9 @@ namespace nearfield::calibrate {
 ///         three are averaged.
 /// Throws  Error where the board cannot be looked for: a dictionary or mosaic that does not exist.
 /// Cost    512 x 512: some 10 ms. Thread-safe.
-/// Source  corners: Forstner and Gulch 1987 (OpenCV's cornerSubPix); markers: Garrido-Jurado et al.
-///         2014.
+/// Source  first guess of corners: Forstner and Gulch 1987 (OpenCV's cornerSubPix), then
+/// corner_fit.h;
+///         markers: Garrido-Jurado et al. 2014.
 std::vector<Corner> find_board(const capture::Frame& frame,
                                const std::string& mosaic,
                                const capture::BoardPlan& board);

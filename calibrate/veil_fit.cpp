@@ -151,10 +151,12 @@ VeilResult fit_round(std::span<const capture::FrameRecord* const> frames,
                      const VeilResult& before) {
     const rig::Interleave interleave = rig::interleave_of(layout.mosaic);
     std::vector<double> widths_px;
+    widths_px.reserve(kWidths);
     for (int k = 0; k < kWidths; ++k)
         widths_px.push_back(layout.size_px.x * kNarrowest *
                             std::pow(kWidest / kNarrowest, double(k) / (kWidths - 1)));
     std::vector<double> plane_widths_px;
+    plane_widths_px.reserve(kWidths);
     for (const double width : widths_px)
         plane_widths_px.push_back(width / interleave.step.x);
     std::vector<WidthSums> sums(widths_px.size());

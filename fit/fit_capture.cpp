@@ -76,7 +76,8 @@ double share_outside(const rig::Rig& rig, const Extent& extent, const std::vecto
         if (!std::isfinite(light[k]))
             continue;
         all += double(light[k]);
-        if (is_inside({static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5}))
+        const std::size_t row = k / width;
+        if (is_inside({static_cast<double>(k % width) + 0.5, static_cast<double>(row) + 0.5}))
             inside += double(light[k]);
     }
     return all > 0 ? std::max(0.0, 1 - inside / all) : 0;

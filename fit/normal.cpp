@@ -47,7 +47,7 @@ struct TileColumn {
     void write(double* to) const {
         four(to) = low;
         four(to + kVector) = middle;
-        four(to + 2 * kVector) = high;
+        four(to + 2 * std::ptrdiff_t{kVector}) = high;
     }
 };
 
@@ -65,7 +65,7 @@ void write_tile(const std::vector<RowPair>& pairs,
             is_apart(pair, width, begin.y, kTileRows))
             continue;
         const double* r = pair.right + begin.y;
-        const TileColumn right{four(r), four(r + kVector), four(r + 2 * kVector)};
+        const TileColumn right{four(r), four(r + kVector), four(r + 2 * std::ptrdiff_t{kVector})};
         const double* left = pair.left + begin.x;
         sum0.add(right, pair.weight * left[0]);
         sum1.add(right, pair.weight * left[1]);

@@ -163,6 +163,7 @@ std::vector<PositionFrames> positions_of(const capture::Capture& capture) {
             position.frames.push_back(&frame);
         }
     std::vector<PositionFrames> positions;
+    positions.reserve(by_place.size());
     for (auto& [place, position] : by_place)
         positions.push_back(std::move(position));
     return positions;

@@ -168,6 +168,7 @@ void check_question(const Design& design,
 
 std::vector<int> folds_of(int measurement_count, int folds, std::uint64_t seed) {
     std::vector<std::pair<std::uint32_t, int>> order;
+    order.reserve(static_cast<std::size_t>(std::max(measurement_count, 0)));
     for (int k = 0; k < measurement_count; ++k)
         order.emplace_back(shared::hash4(glm::uvec4(static_cast<std::uint32_t>(seed),
                                                     static_cast<std::uint32_t>(seed >> 32U),

@@ -126,8 +126,9 @@ Extent lit_extent(const rig::Rig& rig,
     for (std::size_t k = 0; k < light.size(); ++k) {
         if (!(double(light[k]) > limit))
             continue;
+        const std::size_t row = k / width;
         const glm::dvec2 at_px(static_cast<double>(k % width) + 0.5,
-                               static_cast<double>(k / width) + 0.5);
+                               static_cast<double>(row) + 0.5);
         if (const auto at_m = on_s(rig, at_px)) {
             lit.min_m = glm::min(lit.min_m, *at_m);
             lit.max_m = glm::max(lit.max_m, *at_m);

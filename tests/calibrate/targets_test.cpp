@@ -72,17 +72,17 @@ CornerErrors errors_on(const std::string& name, const std::string& mosaic) {
 TEST(Targets, CornersOfTheNearBenchAreFound) {
     const CornerErrors errors = errors_on("bench_near.json", "mono");
     EXPECT_GE(errors.found, 0.98 * errors.visible);
-    EXPECT_LT(errors.rms_px(), 0.045);
-    EXPECT_LT(errors.worst_px, 0.2);
-    EXPECT_LT(glm::length(errors.mean_px()), 0.01);  // half a pixel wrong: 0.7
+    EXPECT_LT(errors.rms_px(), 0.010);
+    EXPECT_LT(errors.worst_px, 0.035);
+    EXPECT_LT(glm::length(errors.mean_px()), 0.001);  // half a pixel wrong: 0.7
 }
 
 TEST(Targets, CornersOfTheFarBenchAreFoundThroughItsMosaic) {
     const CornerErrors errors = errors_on("bench_far.json", "rggb");
     EXPECT_GE(errors.found, 0.98 * errors.visible);
-    EXPECT_LT(errors.rms_px(), 0.045);
-    EXPECT_LT(errors.worst_px, 0.2);
-    EXPECT_LT(glm::length(errors.mean_px()), 0.02);
+    EXPECT_LT(errors.rms_px(), 0.010);
+    EXPECT_LT(errors.worst_px, 0.035);
+    EXPECT_LT(glm::length(errors.mean_px()), 0.001);
 }
 
 // A chessboard by 8 x 8 points a pixel, through a pose and a pinhole; its corners are known.
@@ -133,8 +133,8 @@ TEST(Targets, AChessboardsCornersAreFound) {
     for (const Corner& corner : corners)
         errors.add(corner.at_px - drawn.corner_px(is_turned ? 53 - corner.id : corner.id));
     std::cout << "chessboard: " << errors << "\n";
-    EXPECT_LT(errors.rms_px(), 0.05);
-    EXPECT_LT(glm::length(errors.mean_px()), 0.01);
+    EXPECT_LT(errors.rms_px(), 0.03);  // no blur but the pixels': harder than a lens'
+    EXPECT_LT(glm::length(errors.mean_px()), 0.006);
 }
 
 TEST(Targets, NoBoardIsAnOrdinaryNo) {
