@@ -70,6 +70,8 @@ TileInput measured(const Lamp& lamp, const Design& design, int channels, TileRan
     TileInput input;
     input.value.resize(static_cast<std::size_t>(channels) * count * height * width);
     input.variance.resize(input.value.size());
+    const std::size_t channel_count =
+        std::min(static_cast<std::size_t>(channels), std::size(kChannel));
     TexelDesign texel;
     std::vector<double> truth(static_cast<std::size_t>(design.basis_count()));
     for (std::size_t j = 0; j < height; ++j)
@@ -82,7 +84,7 @@ TileInput measured(const Lamp& lamp, const Design& design, int channels, TileRan
             support::Random random{static_cast<std::uint64_t>(row) * 8192 + i};
             for (std::size_t k = 0; k < count; ++k) {
                 const double light = predicted(texel, static_cast<int>(k), truth);
-                for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+                for (std::size_t c = 0; c < channel_count; ++c) {
                     const double scale = 1e-4;  // of the reference lamp's largest measurement
                     const double variance = scale * (1e-6 * kChannel[c] * light + 1e-9 * scale);
                     const std::size_t at = ((c * count + k) * height + j) * width + i;
