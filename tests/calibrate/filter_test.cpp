@@ -147,11 +147,12 @@ TEST(FilterProfile, AFilterOfAnotherWidthIsToldFromTheNominalOne) {
 TEST(FilterProfile, AViewWithoutFilterIsRefused) {
     const LabFrames lab = views_of(filter_bench("box"));
     calibrate::FilterPicture empty;
-    empty.transmission.assign(120 * 112, 0.0F);
-    empty.sigma.assign(120 * 112, 0.01F);
+    constexpr std::size_t kPixels = 13'440;  // 120 x 112
+    empty.transmission.assign(kPixels, 0.0F);
+    empty.sigma.assign(kPixels, 0.01F);
     EXPECT_THROW(
         calibrate::filter_profile_of({&empty, 1}, geometry_of(lab), model::make_profile("box"), 1,
-                                     std::vector<int>(120 * 112)),
+                                     std::vector<int>(kPixels)),
         Error);
 }
 

@@ -99,6 +99,7 @@ std::vector<calibrate::Bracket> LabFrames::brackets() const {
             by_position[{record.shot.position.x, record.shot.position.y}].push_back(&record);
     }
     std::vector<calibrate::Bracket> brackets;
+    brackets.reserve(by_position.size());
     for (const auto& [position, bracket] : by_position)
         brackets.push_back(bracket);
     return brackets;

@@ -36,9 +36,11 @@ std::vector<calibrate::Photograph> gamma_bracket(const std::vector<double>& ligh
 }
 
 std::vector<double> scene_light() {
+    constexpr std::size_t kRow = 60;
     std::vector<double> light;
-    for (int k = 0; k < 6000; ++k)  // 100 rows, each evenly lit
-        light.push_back(0.5 * std::exp2(9.0 * (k / 60) / 100.0));
+    light.reserve(100 * kRow);
+    for (int row = 0; row < 100; ++row)  // each evenly lit
+        light.insert(light.end(), kRow, 0.5 * std::exp2(9.0 * row / 100.0));
     return light;
 }
 

@@ -30,7 +30,7 @@ double direct_blur(const std::vector<float>& picture, glm::ivec2 size, double si
 
 TEST(Veil, TheWideBlurIsTheGaussianOfItsDefinition) {
     const glm::ivec2 size(120, 90);
-    std::vector<float> picture(120 * 90);
+    std::vector<float> picture(std::size_t{120} * 90);
     for (int y = 20; y < 45; ++y) {
         for (int x = 30; x < 95; ++x)
             picture[static_cast<std::size_t>(y * 120 + x)] = 1.0F + 0.02F * float(x);
@@ -70,7 +70,8 @@ TEST(Veil, WhatWasAddedIsRemoved) {
         EXPECT_LT(worst, 0.01) << mosaic;  // of 1000: float
     }
     EXPECT_THROW(rig::remove_veil({}, size, "mono", 0.1, 5.0), Error);
-    EXPECT_THROW(rig::remove_veil(std::vector<float>(64 * 48), size, "mono", 0.7, 5.0), Error);
+    EXPECT_THROW(rig::remove_veil(std::vector<float>(std::size_t{64} * 48), size, "mono", 0.7, 5.0),
+                 Error);
 }
 
 sample_data::Bench veil_bench(double share) {

@@ -42,7 +42,7 @@ TEST(BandCholesky, SolvesBandsOfAnyShapeInDirtyMemory) {
         const std::vector<double> a = random_band(size, static_cast<std::uint64_t>(size), first);
         const auto n = static_cast<std::size_t>(size);
         std::fill(matrix.value.begin(), matrix.value.end(), kDirt);
-        matrix.value.resize(72 * 72, kDirt);
+        matrix.value.resize(std::size_t{72} * 72, kDirt);
         matrix.first = first;
         reset(matrix, size);
         for (int j = 0; j < size; ++j)

@@ -99,7 +99,7 @@ std::vector<double> dense_nnls(std::span<const double> a, std::span<const double
             break;
         add_column(triangle, static_cast<int>(best));
         Eigen::VectorXd target = solution(triangle);
-        while (triangle.used.size() > 0 && target.minCoeff() <= 0.0) {
+        while (!triangle.used.empty() && target.minCoeff() <= 0.0) {
             move_and_drop(triangle, target, x);
             target = solution(triangle);
         }

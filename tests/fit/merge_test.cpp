@@ -53,6 +53,7 @@ Statistics statistics(double light, const std::vector<double>& exposures_s, int 
     double sum = 0, squares = 0, reported = 0, chi_square = 0, degrees = 0;
     for (int n = 0; n < count; ++n) {
         std::vector<PixelExposure> exposures;
+        exposures.reserve(exposures_s.size());
         for (const double t : exposures_s)
             exposures.push_back({raw_dn(light, t, random), t});
         const MergedPixel pixel = merge_pixel(exposures, kPixel, kNoise);
@@ -83,8 +84,9 @@ double fisher_information(double light, double exposure_s) {
         double density = 0.0, slope = 0.0;
         const int least = std::max(0, static_cast<int>(mean - reach));
         for (int electrons = least; electrons < mean + reach; ++electrons) {
+            int sign = 0;
             const double log_chance =
-                electrons * std::log(mean) - mean - std::lgamma(electrons + 1.0);
+                electrons * std::log(mean) - mean - lgamma_r(electrons + 1.0, &sign);
             const double z = (y - electrons) / read_e;
             const double term = std::exp(log_chance - 0.5 * z * z);
             density += term;

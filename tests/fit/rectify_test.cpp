@@ -223,19 +223,20 @@ TEST(Rectify, VarianceIsThatOfTheMean) {
 TEST(Rectify, LeavesBadPixelsOutAndSaysWhatIsMissing) {
     const RectifyMap map = make_rectify_map(grid_of(20), kSizePx, "mono", 0, seen_straight);
     std::vector<float> values = evenly(2.0F), variance = evenly(1.0F);
-    // One bad pixel in texel (0, 14), at picture (30 ... 37, 20 ... 28): its number is not used.
+    constexpr std::size_t kTexel = 280;  // (0, 14) of 20 a row
+    // One bad pixel in it, at picture (30 ... 37, 20 ... 28): its number is not used.
     values[static_cast<std::size_t>(22 * kSizePx.x + 33)] = std::nanf("");
     variance[static_cast<std::size_t>(22 * kSizePx.x + 33)] = kInfinity;
     RectifiedImage image = rectify(map, values, variance);
-    EXPECT_EQ(image.value[14 * 20], 2.0F);
-    EXPECT_GT(image.variance[14 * 20], image.variance[14 * 20 + 5]);
+    EXPECT_EQ(image.value[kTexel], 2.0F);
+    EXPECT_GT(image.variance[kTexel], image.variance[kTexel + 5]);
     // Half of them bad: missing.
     for (int y = 20; y < 24; ++y)
         for (int x = 30; x < 37; ++x)
             variance[static_cast<std::size_t>(y * kSizePx.x + x)] = kInfinity;
     image = rectify(map, values, variance);
-    EXPECT_EQ(image.variance[14 * 20], kInfinity);
-    EXPECT_TRUE(std::isfinite(image.variance[14 * 20 + 1]));
+    EXPECT_EQ(image.variance[kTexel], kInfinity);
+    EXPECT_TRUE(std::isfinite(image.variance[kTexel + 1]));
     // Texels beside the picture or behind the camera are missing.
     const RectifyMap beside =
         make_rectify_map({{2, 1}, {0.38, 0.0}, {0.78, 0.2}}, kSizePx, "mono", 0,

@@ -28,7 +28,8 @@ Data lamp_data(const TexelDesign& texel, std::uint64_t seed, double missing_shar
     support::Random random{seed};
     std::vector<double> truth;
     for (int m = 0; m < texel.grid.x * texel.grid.y; ++m) {
-        const glm::dvec2 x(m % texel.grid.x - 4.6, m / texel.grid.x - 4.2);
+        const int row = m / texel.grid.x;
+        const glm::dvec2 x(m % texel.grid.x - 4.6, row - 4.2);
         truth.push_back(glm::length(x) < 4.0 ? 1.0 + 50.0 * std::exp(-glm::dot(x, x)) : 0.0);
     }
     Data data;

@@ -29,6 +29,7 @@ double beam(glm::dvec2 u_m, glm::dvec2 s_m) {
 std::vector<double> truth_of(const Slab& planes, int i, int j) {
     const glm::dvec2 s_m = planes.s_min_m + (glm::dvec2(i, j) + 0.5) * planes.texel_m();
     std::vector<double> coeffs;
+    coeffs.reserve(static_cast<std::size_t>(planes.image_count()));
     for (int m = 0; m < planes.image_count(); ++m)
         coeffs.push_back(beam(planes.basis_center_m(m % planes.grid.x, m / planes.grid.x), s_m));
     return coeffs;
