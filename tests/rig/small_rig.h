@@ -18,8 +18,10 @@ inline Rig small_rig() {
     planes.pitch_m = {0.02, 0.0216};
     planes.skew_rad = 0.0017;
     planes.filter_turn_rad = -0.0005;
-    for (int k = 0; k < 6; ++k)
-        planes.position_m.emplace_back(0.02 * (k % 3) - 0.02, 0.0216 * (k / 3), -0.2 - 1e-5 * k);
+    for (int k = 0; k < 6; ++k) {
+        const int row = k / 3;
+        planes.position_m.emplace_back(0.02 * (k % 3) - 0.02, 0.0216 * row, -0.2 - 1e-5 * k);
+    }
     Radiometry& radiometry = rig.radiometry.emplace();
     radiometry.bits = 12;
     radiometry.mosaic = "rggb";

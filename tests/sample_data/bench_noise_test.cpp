@@ -226,7 +226,7 @@ TEST(BenchNoise, MosaicIsRedGreenGreenBlue) {
     const Raw raw = expose(*prepared, flat_shot(1e6));
     std::array<double, 4> sums{};
     for (std::size_t k = 0; k < raw.size(); ++k)
-        sums[2 * (k / 64 % 2) + k % 2] += (raw[k] - 200.0) / (kPixels / 4);
+        sums[2 * (k / 64 % 2) + k % 2] += (raw[k] - 200.0) / (0.25 * kPixels);
     const std::array<double, 4> expected = {4000, 8000, 8000, 2000};
     for (std::size_t k = 0; k < 4; ++k)
         EXPECT_NEAR(sums[k], expected[k], 0.005 * expected[k]) << k;

@@ -95,7 +95,8 @@ TEST(BenchTarget, MarkersDecodeWhereTheyAreProjected) {
             EXPECT_GT(center, middle) << column << " " << row;
             unsigned bits = 0;
             for (int k = 0; k < 16; ++k) {
-                const glm::dvec2 bit(k % 4 + 1.5, k / 4 + 1.5);
+                const int bit_row = k / 4;
+                const glm::dvec2 bit(k % 4 + 1.5, bit_row + 1.5);
                 const glm::dvec2 at =
                     corner + 0.5 * (board.square_m - board.marker_m) + bit * board.marker_m / 6.0;
                 bits = 2 * bits + (bright(picture, projected_px(bench, at)) > middle ? 1U : 0U);
@@ -107,6 +108,23 @@ TEST(BenchTarget, MarkersDecodeWhereTheyAreProjected) {
     EXPECT_EQ(marker, kMarkers.size());
 }
 
+// How far the picture is from symmetric at d about a center, and how that changes with the center.
+struct Asymmetry {
+    double value = 0.0;
+    glm::dvec2 slope{0.0};
+};
+
+Asymmetry asymmetry(const std::vector<float>& picture, glm::dvec2 center, glm::dvec2 d) {
+    const auto value = [&](glm::dvec2 c) {
+        return bright(picture, c + d) - bright(picture, c - d);
+    };
+    constexpr double kStep = 0.05;
+    const glm::dvec2 x(kStep, 0), y(0, kStep);
+    return {value(center), glm::dvec2(value(center + x) - value(center - x),
+                                      value(center + y) - value(center - y)) /
+                               (2 * kStep)};
+}
+
 // Around a corner of four squares the picture is symmetric under half a turn: the point about which
 // it is most so, by Gauss and Newton.
 glm::dvec2 symmetry_center(const std::vector<float>& picture, glm::dvec2 start_px) {
@@ -116,19 +134,9 @@ glm::dvec2 symmetry_center(const std::vector<float>& picture, glm::dvec2 start_p
         glm::dvec2 right(0.0);
         for (double y = -2.0; y <= 2.01; y += 0.5) {
             for (double x = -2.0; x <= 2.01; x += 0.5) {
-                const glm::dvec2 d(x, y);
-                const auto residual = [&](glm::dvec2 c) {
-                    return bright(picture, c + d) - bright(picture, c - d);
-                };
-                constexpr double kStep = 0.05;
-                const glm::dvec2 slope((residual(center + glm::dvec2(kStep, 0)) -
-                                        residual(center - glm::dvec2(kStep, 0))) /
-                                           (2 * kStep),
-                                       (residual(center + glm::dvec2(0, kStep)) -
-                                        residual(center - glm::dvec2(0, kStep))) /
-                                           (2 * kStep));
-                normal += glm::outerProduct(slope, slope);
-                right -= slope * residual(center);
+                const Asymmetry at = asymmetry(picture, center, {x, y});
+                normal += glm::outerProduct(at.slope, at.slope);
+                right -= at.slope * at.value;
             }
         }
         center += glm::inverse(normal) * right;

@@ -53,7 +53,7 @@ TEST(GigeLive, WhatTheLabThrowsEndsTheCamera) {
 
 TEST(GigeLive, APictureOfTheWrongSizeEndsTheCamera) {
     Lab lab = test_lab({64, 48});
-    lab.expose = [](const Exposure&) { return std::vector<std::uint16_t>(63 * 48); };
+    lab.expose = [](const Exposure&) { return std::vector<std::uint16_t>(std::size_t{63} * 48); };
     const Running running(any_port(), lab);
     EXPECT_TRUE(wait_until([&] { return !running.camera.running(); }));
     EXPECT_THROW(running.camera.check(), Error);
@@ -73,7 +73,7 @@ TEST(GigeLive, CountsWhatItSends) {
     ASSERT_TRUE(wait_until([&] { return running.camera.statistics().frames >= 10; }));
     const Statistics seen = running.camera.statistics();
     EXPECT_EQ(seen.packets, 3 * seen.frames) << "leader, one of data, trailer";
-    EXPECT_EQ(seen.bytes, 64 * 48 * seen.frames);
+    EXPECT_EQ(seen.bytes, std::size_t{64} * 48 * seen.frames);
     EXPECT_EQ(seen.commands, 4U);
     EXPECT_EQ(seen.refused_commands, 0U);
 }
