@@ -12,6 +12,10 @@
 
 namespace nearfield::app {
 
+/// The two planes, everything drawn in the slab's frame, the stage's errors.
+report::Section planes_section(const calibrate::Geometry& geometry,
+                               const calibrate::PlanesResult& result);
+
 /// The camera, how well it is known, the planes, the parameters.
 std::vector<report::Section> geometry_sections(const calibrate::Geometry& geometry);
 

@@ -15,7 +15,6 @@
 namespace nearfield::app {
 namespace {
 
-using sample_data::operator*;
 
 double value_at_center(const Profile& profile) {
     return model::eval(profile, 0.0);
@@ -28,9 +27,9 @@ struct RealBench {
     Rigid bench_from_slab;
 
     glm::dvec3 filter_center_slab(std::size_t position) const {
-        const glm::dvec3 at_bench = sample_data::apply(
-            places.bench_from_filter, glm::dvec3(places.position_m[position], 0.0));
-        return sample_data::apply(sample_data::inverse(bench_from_slab), at_bench);
+        const glm::dvec3 at_bench =
+            apply(places.bench_from_filter, glm::dvec3(places.position_m[position], 0.0));
+        return apply(inverse(bench_from_slab), at_bench);
     }
 };
 
@@ -82,7 +81,7 @@ fit::TileInput noise_free_tile(const RealBench& real,
         for (int i = 0; i < planes.texels.x; ++i) {
             const glm::dvec2 s_m =
                 planes.s_min_m + (glm::dvec2(i, rows.first_row + row) + 0.5) * planes.texel_m();
-            points.push_back(sample_data::apply(real.bench_from_slab, glm::dvec3(s_m, 0.0)));
+            points.push_back(apply(real.bench_from_slab, glm::dvec3(s_m, 0.0)));
         }
         const sample_data::LineLight line =
             line_light(light, points, to_lamp, colors, static_cast<int>(positions));
@@ -152,10 +151,9 @@ std::vector<glm::dvec3> receiver_places(double delta_m) {
 double real_delta_m(const RealBench& real) {
     glm::dvec3 middle(0.0);
     for (std::size_t k = 0; k < real.places.position_m.size(); ++k)
-        middle += sample_data::apply(real.places.bench_from_filter,
-                                     glm::dvec3(real.places.position_m[k], 0.0)) /
+        middle += apply(real.places.bench_from_filter, glm::dvec3(real.places.position_m[k], 0.0)) /
                   static_cast<double>(real.places.position_m.size());
-    return -sample_data::apply(sample_data::inverse(real.places.bench_from_screen), middle).z;
+    return -apply(inverse(real.places.bench_from_screen), middle).z;
 }
 
 void summarize(Closure& closure) {
@@ -198,15 +196,14 @@ Closure closure_of(const sample_data::Bench& bench,
     const LightField noise_free = noise_free_fit(real, fit, model_error_rel);
     Closure closure;
     closure.lamp_factor = sample_data::lamp_factor(bench, time_s);
-    const Rigid lamp_from_slab =
-        sample_data::inverse(real.places.bench_from_lamp) * real.bench_from_slab;
+    const Rigid lamp_from_slab = inverse(real.places.bench_from_lamp) * real.bench_from_slab;
     const std::vector<glm::dvec3> places = receiver_places(rig.planes->delta_m);
     closure.receivers.resize(places.size());
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
         const glm::dvec3 toward =
             -glm::normalize(places[k] + glm::dvec3(0, 0, rig.planes->delta_m));
         const model::Receiver in_slab{places[k], toward};
-        const model::Receiver in_lamp{sample_data::apply(lamp_from_slab, places[k]),
+        const model::Receiver in_lamp{apply(lamp_from_slab, places[k]),
                                       lamp_from_slab.rotation * toward};
         ClosureReceiver& receiver = closure.receivers[k];
         receiver.at_slab_m = places[k];

@@ -59,19 +59,6 @@ glm::dmat2 distortion_slope(const BenchCamera& camera, glm::dvec2 p) {
 
 }  // namespace
 
-glm::dvec3 apply(const Rigid& a_from_b, glm::dvec3 point_b) {
-    return a_from_b.rotation * point_b + a_from_b.translation_m;
-}
-
-Rigid inverse(const Rigid& a_from_b) {
-    const glm::dmat3 rotation = glm::transpose(a_from_b.rotation);
-    return {rotation, -(rotation * a_from_b.translation_m)};
-}
-
-Rigid operator*(const Rigid& a_from_b, const Rigid& b_from_c) {
-    return {a_from_b.rotation * b_from_c.rotation, apply(a_from_b, b_from_c.translation_m)};
-}
-
 glm::dmat3 turn_xyz(glm::dvec3 angle_rad) {
     const glm::dvec3 c = glm::cos(angle_rad), s = glm::sin(angle_rad);
     const glm::dmat3 about_x(1, 0, 0, 0, c.x, s.x, 0, -s.x, c.x);

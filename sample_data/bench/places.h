@@ -2,6 +2,7 @@
 /// Where everything on the bench really is, drawn errors included; the camera's projection.
 #pragma once
 
+#include "formats/files/rigid.h"
 #include "sample_data/bench/bench.h"
 
 #include <glm/glm.hpp>
@@ -19,10 +20,6 @@ struct Places {
 };
 
 Places make_places(const Bench& bench);
-
-glm::dvec3 apply(const Rigid& a_from_b, glm::dvec3 point_b);
-Rigid inverse(const Rigid& a_from_b);
-Rigid operator*(const Rigid& a_from_b, const Rigid& b_from_c);
 
 /// Turn about x, then y, then z (a_from_b for a vector in b).
 glm::dmat3 turn_xyz(glm::dvec3 angle_rad);

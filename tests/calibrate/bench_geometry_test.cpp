@@ -51,11 +51,10 @@ Observations observed(const std::string& name, const std::string& mosaic) {
             const auto index = static_cast<std::size_t>(row * seen.grid.x + column);
             const glm::dvec3 center(places.position_m[index], 0.0);
             const glm::dvec2 noise(test::normal(3, 0, index), test::normal(3, 1, index));
-            seen.filters.push_back(
-                {{column, row},
-                 test::seen_px(whole, sample_data::apply(places.bench_from_filter, center)) +
-                     kFilterNoise_px * noise,
-                 glm::dmat2(kFilterNoise_px * kFilterNoise_px)});
+            seen.filters.push_back({{column, row},
+                                    test::seen_px(whole, apply(places.bench_from_filter, center)) +
+                                        kFilterNoise_px * noise,
+                                    glm::dmat2(kFilterNoise_px * kFilterNoise_px)});
         }
     }
     return seen;
@@ -65,7 +64,7 @@ Observations observed(const std::string& name, const std::string& mosaic) {
 double true_delta_m(const Bench& bench) {
     const sample_data::Places places = sample_data::make_places(bench);
     const glm::dvec3 middle =
-        sample_data::apply(places.bench_from_filter, glm::dvec3(bench.filter.center_m, 0.0));
+        apply(places.bench_from_filter, glm::dvec3(bench.filter.center_m, 0.0));
     const Rigid& screen = places.bench_from_screen;
     return glm::dot(screen.rotation[2], screen.translation_m - middle);
 }

@@ -40,8 +40,8 @@ inline capture::Frame exposed(const sample_data::PreparedBench& prepared, std::s
 
 /// Where the camera sees a point of the bench.
 inline glm::dvec2 seen_px(const sample_data::Bench& bench, glm::dvec3 p_bench) {
-    const Rigid camera_from_bench = sample_data::inverse(bench.camera.bench_from_camera);
-    return *sample_data::project_px(bench.camera, sample_data::apply(camera_from_bench, p_bench));
+    const Rigid camera_from_bench = inverse(bench.camera.bench_from_camera);
+    return *sample_data::project_px(bench.camera, apply(camera_from_bench, p_bench));
 }
 
 }  // namespace nearfield::test

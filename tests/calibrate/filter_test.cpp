@@ -19,10 +19,9 @@ glm::dvec2 seen_px(const sample_data::Bench& bench, glm::ivec2 position) {
     const sample_data::Places places = sample_data::make_places(bench);
     const auto k = static_cast<std::size_t>(position.y * bench.filter.grid.x + position.x);
     const glm::dvec3 in_bench =
-        sample_data::apply(places.bench_from_filter, glm::dvec3(places.position_m[k], 0.0));
-    return *sample_data::project_px(
-        bench.camera,
-        sample_data::apply(sample_data::inverse(bench.camera.bench_from_camera), in_bench));
+        apply(places.bench_from_filter, glm::dvec3(places.position_m[k], 0.0));
+    return *sample_data::project_px(bench.camera,
+                                    apply(inverse(bench.camera.bench_from_camera), in_bench));
 }
 
 /// A camera that sees the filter 20 pixels a pitch, in the middle of its picture.
@@ -67,8 +66,7 @@ calibrate::FilterGeometry geometry_of(const LabFrames& lab) {
                      camera.cy_px,
                      {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}};
     using sample_data::operator*;
-    const Rigid u_frame =
-        sample_data::inverse(camera.bench_from_camera) * truth.places.bench_from_filter;
+    const Rigid u_frame = inverse(camera.bench_from_camera) * truth.places.bench_from_filter;
     geometry.camera_from_u = u_frame;
     geometry.pitch_m = truth.bench.filter.pitch_m;
     geometry.psf_sigma_px = camera.psf_sigma_px;

@@ -50,8 +50,8 @@ CornerErrors errors_on(const std::string& name, const std::string& mosaic) {
     CornerErrors errors;
     for (std::size_t view = 0; view < bench.targets.views.size(); ++view) {
         const auto true_px = [&](glm::dvec2 board_m) {
-            return test::seen_px(
-                bench, sample_data::apply(places.bench_from_board[view], glm::dvec3(board_m, 0.0)));
+            return test::seen_px(bench,
+                                 apply(places.bench_from_board[view], glm::dvec3(board_m, 0.0)));
         };
         const glm::ivec2 inner = board.squares - 1;
         for (int id = 0; id < inner.x * inner.y; ++id) {
@@ -93,8 +93,7 @@ struct DrawnBoard {
     Rigid camera_from_board{test::turn_xyz({0.3, -0.4, 0.2}), {-0.12, -0.06, 0.55}};
 
     glm::dvec2 corner_px(int id) const {
-        const glm::dvec3 p =
-            sample_data::apply(camera_from_board, glm::dvec3(corner_board_m(board, id), 0.0));
+        const glm::dvec3 p = apply(camera_from_board, glm::dvec3(corner_board_m(board, id), 0.0));
         return focal_px * glm::dvec2(p) / p.z + center_px;
     }
     double brightness(glm::dvec2 at_px) const {
