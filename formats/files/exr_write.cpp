@@ -2,6 +2,7 @@
 #include "formats/files/atomic_file.h"
 #include "formats/files/error.h"
 #include "formats/files/exr_context.h"
+#include "formats/files/exr_stream.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -10,6 +11,11 @@
 
 namespace nearfield::exr {
 namespace {
+
+// Chunks that are compressed side by side.
+constexpr std::size_t kBatch = 16;
+// Images that are fetched at a time have so many bytes, or are one.
+constexpr std::size_t kFetchedBytes = std::size_t{64} << 20U;
 
 struct Output {
     AtomicFile file;
@@ -59,9 +65,19 @@ class Writer {
     void set(const Attributes& attributes);
     void write_header() { verify(exr_write_header(context_)); }
     void write_part(int part, const Atlas<const float>& atlas);
+    /// A tiled atlas whose images are fetched: (plane, image, values).
+    void write_part_fetched(int part,
+                            const Atlas<const float>& atlas,
+                            const std::function<void(std::size_t, int, float*)>& fetch);
     void finish();
 
   private:
+    // A chunk and where its pixels are.
+    struct Piece {
+        const Atlas<const float>* atlas = nullptr;
+        Chunk chunk;
+    };
+    void write_pieces(int part, const std::vector<Piece>& pieces);
     void verify(exr_result_t result) {
         if (output_.failed)
             throw Error{*output_.failed};
@@ -143,39 +159,71 @@ exr_result_t Writer::encode(exr_encode_pipeline_t& pipeline,
     return result == EXR_ERR_SUCCESS ? exr_encoding_run(context_, part, &pipeline) : result;
 }
 
+void Writer::write_pieces(int part, const std::vector<Piece>& pieces) {
+    // Compress side by side, then write in order.
+    std::vector<exr_encode_pipeline_t> pipelines(pieces.size());
+    std::vector<exr_result_t> results(pieces.size(), EXR_ERR_SUCCESS);
+    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
+        results[k] = encode(pipelines[k], part, *pieces[k].atlas, pieces[k].chunk);
+    });
+    exr_result_t result = EXR_ERR_SUCCESS;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const Chunk& chunk = pieces[k].chunk;
+        const exr_encode_pipeline_t& done = pipelines[k];
+        if (result == EXR_ERR_SUCCESS)
+            result = results[k];
+        if (result == EXR_ERR_SUCCESS)
+            result = pieces[k].atlas->is_tiled
+                         ? exr_write_tile_chunk(context_, part, chunk.tile_x, chunk.tile_y, 0, 0,
+                                                done.compressed_buffer, done.compressed_bytes)
+                         : exr_write_scanline_chunk(context_, part, chunk.row,
+                                                    done.compressed_buffer, done.compressed_bytes);
+    }
+    for (exr_encode_pipeline_t& pipeline : pipelines)
+        exr_encoding_destroy(context_, &pipeline);
+    verify(result);
+}
+
 void Writer::write_part(int part, const Atlas<const float>& atlas) {
     int rows_per_chunk = atlas.image.y;
     if (!atlas.is_tiled)
         verify(exr_get_scanlines_per_chunk(context_, part, &rows_per_chunk));
     const std::size_t count = chunk_count(atlas, rows_per_chunk);
-
-    // Compress a few chunks side by side, then write them in order.
-    constexpr std::size_t kBatch = 16;
     for (std::size_t begin = 0; begin < count; begin += kBatch) {
-        const std::size_t size = std::min(kBatch, count - begin);
-        std::vector<exr_encode_pipeline_t> pipelines(size);
-        std::vector<exr_result_t> results(size, EXR_ERR_SUCCESS);
-        tbb::parallel_for(std::size_t{0}, size, [&](std::size_t k) {
-            results[k] =
-                encode(pipelines[k], part, atlas, chunk_at(atlas, begin + k, rows_per_chunk));
-        });
-        exr_result_t result = EXR_ERR_SUCCESS;
+        std::vector<Piece> pieces;
+        for (std::size_t k = begin; k < std::min(begin + kBatch, count); ++k)
+            pieces.push_back({&atlas, chunk_at(atlas, k, rows_per_chunk)});
+        write_pieces(part, pieces);
+    }
+}
+
+void Writer::write_part_fetched(int part,
+                                const Atlas<const float>& atlas,
+                                const std::function<void(std::size_t, int, float*)>& fetch) {
+    const std::size_t pixels =
+        static_cast<std::size_t>(atlas.image.x) * static_cast<std::size_t>(atlas.image.y);
+    const std::size_t image_values = pixels * atlas.planes.size();
+    const std::size_t batch =
+        std::clamp<std::size_t>(kFetchedBytes / (image_values * sizeof(float)), 1, kBatch);
+    const std::size_t count = chunk_count(atlas, atlas.image.y);
+    std::vector<float> values(image_values * std::min(batch, count));
+    for (std::size_t begin = 0; begin < count; begin += batch) {
+        const std::size_t size = std::min(batch, count - begin);
+        // Each image's planes as if all images of the atlas were this one.
+        std::vector<Atlas<const float>> fetched(size, atlas);
+        std::vector<Piece> pieces;
         for (std::size_t k = 0; k < size; ++k) {
-            const Chunk chunk = chunk_at(atlas, begin + k, rows_per_chunk);
-            const exr_encode_pipeline_t& done = pipelines[k];
-            if (result == EXR_ERR_SUCCESS)
-                result = results[k];
-            if (result == EXR_ERR_SUCCESS)
-                result =
-                    atlas.is_tiled
-                        ? exr_write_tile_chunk(context_, part, chunk.tile_x, chunk.tile_y, 0, 0,
-                                               done.compressed_buffer, done.compressed_bytes)
-                        : exr_write_scanline_chunk(context_, part, chunk.row,
-                                                   done.compressed_buffer, done.compressed_bytes);
+            const Chunk chunk = chunk_at(atlas, begin + k, atlas.image.y);
+            for (std::size_t plane = 0; plane < atlas.planes.size(); ++plane) {
+                float* const to = &values[k * image_values + plane * pixels];
+                fetch(plane, image_at(atlas, chunk), to);
+                Plane<const float>& here = fetched[k].planes[plane];
+                here = upright<const float>(here.channel, to, atlas.image);
+                here.image_stride = 0;
+            }
+            pieces.push_back({&fetched[k], chunk});
         }
-        for (exr_encode_pipeline_t& pipeline : pipelines)
-            exr_encoding_destroy(context_, &pipeline);
-        verify(result);
+        write_pieces(part, pieces);
     }
 }
 
@@ -197,6 +245,24 @@ void write(const std::vector<Atlas<const float>>& atlases,
     writer.write_header();
     for (std::size_t part = 0; part < atlases.size(); ++part)
         writer.write_part(static_cast<int>(part), atlases[part]);
+    writer.finish();
+}
+
+void write_fetched(const std::vector<Atlas<const float>>& atlases,
+                   const FetchImage& fetch,
+                   Compression compression,
+                   const Attributes& attributes,
+                   const std::string& path) {
+    Writer writer(path);
+    for (const Atlas<const float>& atlas : atlases)
+        writer.add(atlas, compression);
+    writer.set(attributes);
+    writer.write_header();
+    for (std::size_t part = 0; part < atlases.size(); ++part)
+        writer.write_part_fetched(static_cast<int>(part), atlases[part],
+                                  [&](std::size_t plane, int image, float* values) {
+                                      fetch(part, plane, image, values);
+                                  });
     writer.finish();
 }
 
