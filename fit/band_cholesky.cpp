@@ -11,12 +11,13 @@ namespace nearfield::fit {
 namespace {
 
 constexpr int kBlock = 4;  // columns at a time
-constexpr int kChunk = 8;  // rows at a time: with 4 columns, 8 sums in registers
+constexpr int kChunk = 8;  // rows at a time: with 4 columns, sums that fit the registers
 constexpr double kLeastPivot = 1e-14;
 
 using Rows4 = Eigen::Array<double, 4, 1>;
-using Rows8 = Eigen::Array<double, kChunk, 1>;
 using Lanes = Eigen::Array<double, kLanes, 1>;
+using Tall = Eigen::Matrix<double, kChunk, kBlock>;
+using Square = Eigen::Matrix<double, kBlock, kBlock>;
 
 template <typename Rows>
 Eigen::Map<Rows> at(double* p) {
@@ -45,24 +46,20 @@ int block_end(const BandMatrix& matrix, int j0) {
     return std::max(matrix.row_end[static_cast<std::size_t>(j0 + kBlock - 1)], j0 + kBlock);
 }
 
-// A[i..i+7, j0..j0+3] -= L[i..i+7, k] L[j0..j0+3, k]^T over columns k before the block.
+// A[i..i+7, j0..j0+3] -= L[i..i+7, k] L[j0..j0+3, k]^T over columns k before the block, four of
+// them at a time: a product of small matrices, which Eigen fuses. Columns of a block before the
+// first that reaches row i hold zeros there.
 void update_chunk(BandMatrix& matrix, int j0, int i) {
-    double* a0 = column(matrix, j0) + i;
-    const std::ptrdiff_t leading = matrix.leading;
-    Rows8 sum0 = at<Rows8>(a0), sum1 = at<Rows8>(a0 + leading);
-    Rows8 sum2 = at<Rows8>(a0 + 2 * leading), sum3 = at<Rows8>(a0 + 3 * leading);
-    const double* l = column(matrix, matrix.first[static_cast<std::size_t>(i)]);
-    for (int k = matrix.first[static_cast<std::size_t>(i)]; k < j0; ++k, l += leading) {
-        const Rows8 rows = at<Rows8>(l + i);
-        sum0 -= rows * l[j0];
-        sum1 -= rows * l[j0 + 1];
-        sum2 -= rows * l[j0 + 2];
-        sum3 -= rows * l[j0 + 3];
+    const Eigen::OuterStride<> apart(matrix.leading);
+    Eigen::Map<Tall, 0, Eigen::OuterStride<>> rows(column(matrix, j0) + i, apart);
+    Tall sum = rows;
+    for (int k = matrix.first[static_cast<std::size_t>(i)] / kBlock * kBlock; k < j0; k += kBlock) {
+        const Eigen::Map<const Tall, 0, Eigen::OuterStride<>> left(column(matrix, k) + i, apart);
+        const Eigen::Map<const Square, 0, Eigen::OuterStride<>> right(column(matrix, k) + j0,
+                                                                      apart);
+        sum.noalias() -= left.lazyProduct(right.transpose());
     }
-    at<Rows8>(a0) = sum0;
-    at<Rows8>(a0 + leading) = sum1;
-    at<Rows8>(a0 + 2 * leading) = sum2;
-    at<Rows8>(a0 + 3 * leading) = sum3;
+    rows = sum;
 }
 
 // Cholesky factorization of the block on the diagonal.
@@ -184,24 +181,45 @@ void solve(const BandMatrix& factor, double* x) {
     }
 }
 
-void solve_lower(const BandMatrix& factor, double* x) {
-    for (int j = 0; j < factor.size; ++j) {
-        const double* l = column(factor, j);
-        const Lanes pivot =
-            at<Lanes>(lanes_of(x, j)) * factor.inverse_diagonal[static_cast<std::size_t>(j)];
-        at<Lanes>(lanes_of(x, j)) = pivot;
-        for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
-            at<Lanes>(lanes_of(x, i)) -= pivot * l[i];
+void solve_lower(const BandMatrix& factor, int first_row, double* x) {
+    const std::ptrdiff_t leading = factor.leading;
+    for (int j0 = first_row / kBlock * kBlock; j0 < factor.padded; j0 += kBlock) {
+        const double* l = column(factor, j0);
+        Lanes pivot[kBlock];
+        for (int c = 0; c < kBlock; ++c) {
+            pivot[c] = at<Lanes>(lanes_of(x, j0 + c));
+            for (int d = 0; d < c; ++d)
+                pivot[c] -= pivot[d] * l[d * leading + j0 + c];
+            pivot[c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
+            at<Lanes>(lanes_of(x, j0 + c)) = pivot[c];
+        }
+        const int end = std::min(block_end(factor, j0), factor.padded);
+        for (int i = j0 + kBlock; i < end; ++i)
+            at<Lanes>(lanes_of(x, i)) -= pivot[0] * l[i] + pivot[1] * l[leading + i] +
+                                         pivot[2] * l[2 * leading + i] +
+                                         pivot[3] * l[3 * leading + i];
     }
 }
 
 void solve_upper(const BandMatrix& factor, double* x) {
-    for (int j = factor.size - 1; j >= 0; --j) {
-        const double* l = column(factor, j);
-        Lanes sum = at<Lanes>(lanes_of(x, j));
-        for (int i = j + 1; i < factor.row_end[static_cast<std::size_t>(j)]; ++i)
-            sum -= at<Lanes>(lanes_of(x, i)) * l[i];
-        at<Lanes>(lanes_of(x, j)) = sum * factor.inverse_diagonal[static_cast<std::size_t>(j)];
+    const std::ptrdiff_t leading = factor.leading;
+    for (int j0 = factor.padded - kBlock; j0 >= 0; j0 -= kBlock) {
+        const double* l = column(factor, j0);
+        Lanes sum[kBlock];
+        for (int c = 0; c < kBlock; ++c)
+            sum[c] = at<Lanes>(lanes_of(x, j0 + c));
+        const int end = std::min(block_end(factor, j0), factor.padded);
+        for (int i = j0 + kBlock; i < end; ++i) {
+            const Lanes row = at<Lanes>(lanes_of(x, i));
+            for (int c = 0; c < kBlock; ++c)
+                sum[c] -= row * l[c * leading + i];
+        }
+        for (int c = kBlock - 1; c >= 0; --c) {
+            for (int d = c + 1; d < kBlock; ++d)
+                sum[c] -= sum[d] * l[c * leading + j0 + d];
+            sum[c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
+            at<Lanes>(lanes_of(x, j0 + c)) = sum[c];
+        }
     }
 }
 

@@ -32,8 +32,9 @@ void factorize(BandMatrix& matrix);
 void solve(const BandMatrix& factor, double* x);
 
 constexpr int kLanes = 8;
-/// x <- L^-1 x and x <- L^-T x for eight right sides at once, x[row][lane].
-void solve_lower(const BandMatrix& factor, double* x);
+/// x <- L^-1 x and x <- L^-T x for eight right sides at once, x[row][lane] of `padded` rows, zeros
+/// past `size` and, of the first, before first_row.
+void solve_lower(const BandMatrix& factor, int first_row, double* x);
 void solve_upper(const BandMatrix& factor, double* x);
 
 }  // namespace nearfield::fit

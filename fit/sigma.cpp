@@ -39,7 +39,7 @@ LaneSums squared_norms(const Workspace& work) {
 }
 
 void clear_lanes(Workspace& work) {
-    work.lanes.assign(static_cast<std::size_t>(work.factor.size * kLanes), 0.0);
+    work.lanes.assign(static_cast<std::size_t>(work.factor.padded * kLanes), 0.0);
 }
 
 void fill_free(const Penalty& penalty,
@@ -52,7 +52,7 @@ void fill_free(const Penalty& penalty,
         clear_lanes(work);
         for (int lane = 0; lane < lanes; ++lane)
             work.lanes[static_cast<std::size_t>((begin + lane) * kLanes + lane)] = 1.0;
-        solve_lower(work.factor, work.lanes.data());
+        solve_lower(work.factor, begin, work.lanes.data());
         LaneSums variance = squared_norms(work);
         if (!work.normal.penalty_weight.empty()) {
             solve_upper(work.factor, work.lanes.data());
@@ -79,7 +79,7 @@ void fill_bound(const std::vector<int>& bound, Workspace& work, TexelFit& fit) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
                 work.lanes[i * kLanes + lane] =
                     symmetric_entry(work.normal, work.free_index[i], bound[begin + lane]);
-        solve_lower(work.factor, work.lanes.data());
+        solve_lower(work.factor, 0, work.lanes.data());
         const LaneSums explained = squared_norms(work);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const auto m = static_cast<std::size_t>(bound[begin + lane]);

@@ -52,7 +52,7 @@ TEST(BandCholesky, SolvesBandsOfAnyShapeInDirtyMemory) {
         factorize(matrix);
         support::Random random{99};
         std::vector<double> truth, x(static_cast<std::size_t>(matrix.vector_size()), 0.0);
-        std::vector<double> lanes(n * kLanes, 0.0);
+        std::vector<double> lanes(static_cast<std::size_t>(matrix.padded * kLanes), 0.0);
         for (std::size_t i = 0; i < n; ++i)
             truth.push_back(random.uniform(-1.0, 1.0));
         for (std::size_t i = 0; i < n; ++i)
@@ -62,7 +62,7 @@ TEST(BandCholesky, SolvesBandsOfAnyShapeInDirtyMemory) {
                     lanes[i * kLanes + lane] += static_cast<double>(lane) * a[i * n + j] * truth[j];
             }
         solve(matrix, x.data());
-        solve_lower(matrix, lanes.data());
+        solve_lower(matrix, 0, lanes.data());
         solve_upper(matrix, lanes.data());
         for (std::size_t i = 0; i < n; ++i) {
             ASSERT_NEAR(x[i], truth[i], 1e-13) << size;
@@ -70,6 +70,13 @@ TEST(BandCholesky, SolvesBandsOfAnyShapeInDirtyMemory) {
                 ASSERT_NEAR(lanes[i * kLanes + lane], static_cast<double>(lane) * truth[i], 1e-12)
                     << size;
         }
+        // A right side that begins late.
+        std::vector<double> late(lanes.size(), 0.0);
+        late[static_cast<std::size_t>(size / 2 * kLanes + 3)] = 1.0;
+        std::vector<double> whole = late;
+        solve_lower(matrix, size / 2, late.data());
+        solve_lower(matrix, 0, whole.data());
+        ASSERT_EQ(late, whole);
     }
 }
 
