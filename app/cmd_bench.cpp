@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/calibration.h"
 #include "app/bench/files.h"
+#include "app/bench/fit.h"
 #include "app/bench/papers.h"
 #include "app/bench/shadows.h"
 #include "app/bench/summary.h"
@@ -25,10 +26,11 @@
 namespace nearfield::app {
 namespace {
 
-enum class What { Accuracy, Shadows, Papers, Calibration };
+enum class What { Accuracy, Shadows, Papers, Calibration, Fit };
 
 constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows",
-                     *kOfPapers = "bench papers", *kOfCalibration = "bench calibration";
+                     *kOfPapers = "bench papers", *kOfCalibration = "bench calibration",
+                     *kOfFit = "bench fit";
 
 struct BenchCommand {
     What what = What::Accuracy;
@@ -156,6 +158,28 @@ void run_calibration(const BenchCommand& command, const std::string& command_lin
                     findings.settings.size(), findings.trials, findings.time_s));
 }
 
+void run_fit(const BenchCommand& command, const std::string& command_line) {
+    if (!command.input.empty())
+        throw CLI::ValidationError(kOfFit, "expected no file: it makes its lamp");
+    const std::filesystem::path folder(command.page);
+    bench::make_folder(folder.string());
+    ProgressLine progress(kOfFit);
+    const bench::FitFindings findings = bench::run_fit_sweeps(
+        {command.quick, command.options.seed}, [&](double fraction) { progress.update(fraction); });
+    progress.finish();
+    const bench::FitSetup setup{command_line, machine(), command.quick};
+    write_file(bench::as_csv(findings), (folder / "fit.csv").string());
+    const std::string page = (folder / "fit.html").string();
+    bench::write_page(findings, setup, page);
+    if (command.json)
+        print(bench::as_json(findings, setup));
+    for (const bench::SolverTime& solver : findings.solvers.solvers)
+        say(fmt::format("{}: {} a texel, {:.3g} times the first\n", solver.name,
+                        bench::time_text(solver.texel_us), solver.times_ours));
+    say(fmt::format("{}: {} settings measured in {:.0f} s\n", page, findings.results.size(),
+                    findings.time_s));
+}
+
 // What only others of them take.
 void refuse_foreign_options(const CLI::App& command, const std::string& own) {
     for (const CLI::Option* option : command.get_options())
@@ -260,6 +284,8 @@ Bench of_what(What what) {
             return {kOfPapers, run_papers};
         case What::Calibration:
             return {kOfCalibration, run_calibration};
+        case What::Fit:
+            return {kOfFit, run_fit};
         case What::Accuracy:
             break;
     }
@@ -272,28 +298,32 @@ void add_bench(CLI::App& app) {
     auto c = std::make_shared<BenchCommand>();
     CLI::App* sub = add_command(
         app, "bench",
-        "Measures what accuracy costs: samplers and their knobs, shadow maps, calibration",
+        "Measures what accuracy costs: samplers and their knobs, shadow maps, calibration, fit",
         {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
          "nearfield bench accuracy --samplers sum,pdis --k 16,63,1000 -o pdis.html",
          "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers",
-         "nearfield bench calibration -o calibration"});
+         "nearfield bench calibration -o calibration", "nearfield bench fit -o fit"});
     add_choice(
         *sub, "what", c->what,
         {{"accuracy", What::Accuracy},
          {"shadows", What::Shadows},
          {"papers", What::Papers},
-         {"calibration", What::Calibration}},
+         {"calibration", What::Calibration},
+         {"fit", What::Fit}},
         "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene; "
         "papers: a published paper's figures again, on lamps of its sizes; calibration: errors "
-        "of a calibrated bench against noise, boards, bends, tilts, lens models")
+        "of a calibrated bench against noise, boards, bends, tilts, lens models; fit: errors of a "
+        "measured light field against positions, exposures, filter, basis, planes, smoothness, "
+        "and the solver beside general ones")
         ->required();
     sub->add_option(
            "input", c->input,
            "accuracy: luminaire or light field, .exr, by default the reference lamp (nearfield "
            "simulate reference); shadows: scene, .gltf or .glb")
         ->type_name("FILE");
-    sub->add_option("-o,--output", c->page, "page to write, .html; papers, calibration: folder")
+    sub->add_option("-o,--output", c->page,
+                    "page to write, .html; papers, calibration, fit: folder")
         ->required()
         ->type_name("FILE");
     sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
@@ -307,12 +337,12 @@ void add_bench(CLI::App& app) {
     add_sweep_options(*sub, c->options);
     sub->option_defaults()->group(kOfShadows);
     add_shadow_options(*sub, c->shadows);
-    sub->option_defaults()->group(fmt::format("{}, {}", kOfAccuracy, kOfCalibration));
+    sub->option_defaults()->group(fmt::format("{}, {}, {}", kOfAccuracy, kOfCalibration, kOfFit));
     add_number(*sub, "--seed", c->options.seed, std::uint32_t{0},
                std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
-    sub->option_defaults()->group(fmt::format("{}, {}", kOfPapers, kOfCalibration));
+    sub->option_defaults()->group(fmt::format("{}, {}, {}", kOfPapers, kOfCalibration, kOfFit));
     sub->add_flag("--quick", c->quick,
-                  "small lamps and frames, few calibrations: seconds, no conclusions");
+                  "small lamps and frames, few calibrations and texels: seconds, no conclusions");
     sub->option_defaults()->group(kOfCalibration);
     add_number(*sub, "--trials", c->calibration.trials, 2, 100000, "N",
                "calibrations of each setting, 20 and of quick runs 3 by default")
