@@ -74,10 +74,33 @@ TEST(Response, TwoPhotographsOrDarkOnesAreRefused) {
     EXPECT_THROW(calibrate::recover_response(bracket, 1, {}), Error);
 }
 
+// A picture of shared exponents holds mantissas that were cut off, not rounded (Ward, "Real
+// Pixels", 1991): what it says is half a step above them, which OpenCV leaves out. Blue is dark in
+// this one: its mantissas' median is 19, so that half a step is 2.6 %.
+cv::Mat read_shared_exponents(const std::string& path) {
+    constexpr int kMantissaBits = 8;
+    cv::Mat picture = cv::imread(path, cv::IMREAD_UNCHANGED);
+    picture.forEach<cv::Vec3f>([](cv::Vec3f& bgr, const int*) {
+        int exponent = 0;
+        const float largest = std::max({bgr[0], bgr[1], bgr[2]});
+        std::frexp(largest, &exponent);
+        if (largest > 0.0F)
+            bgr += cv::Vec3f::all(0.5F * std::ldexp(1.0F, exponent - kMantissaBits));
+    });
+    return picture;
+}
+
+// Of the files, one (32 s) was packed as JPEG, whatever its name says: its errors are those of no
+// sensor.
+bool is_jpeg(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return file.get() == 0xff && file.get() == 0xd8;
+}
+
 TEST(Response, TheMemorialChurchIsWhatItsAuthorsPublished) {
     if (!std::filesystem::exists(kMemorial + "memorial.hdr"))
         GTEST_SKIP() << kMemorial << " is not here";
-    std::vector<calibrate::Photograph> bracket;
+    std::vector<calibrate::Photograph> bracket, lossless;
     std::ifstream list(kMemorial + "memorial.hdr_image_list.txt");
     std::vector<char> is_used;
     for (std::string line; std::getline(list, line);) {
@@ -99,12 +122,15 @@ TEST(Response, TheMemorialChurchIsWhatItsAuthorsPublished) {
                 is_used[k] = 0;  // shifted border
             photograph.values.insert(photograph.values.end(), {bgr[2], bgr[1], bgr[0]});
         }
+        if (!is_jpeg(name))
+            lossless.push_back(photograph);
         bracket.push_back(std::move(photograph));
     }
     ASSERT_EQ(bracket.size(), 8U);
-    const calibrate::ResponseCurve response = calibrate::recover_response(bracket, 3, is_used);
-    const std::vector<float> light = calibrate::merged(bracket, 3, response);
-    const cv::Mat published = cv::imread(kMemorial + "memorial.hdr", cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(lossless.size(), 7U);
+    const calibrate::ResponseCurve response = calibrate::recover_response(lossless, 3, is_used);
+    const std::vector<float> light = calibrate::merged(lossless, 3, response);
+    const cv::Mat published = read_shared_exponents(kMemorial + "memorial.hdr");
     ASSERT_EQ(published.total() * 3, light.size());
     std::vector<std::vector<double>> ratios(3);
     std::vector<double> all;
@@ -134,9 +160,8 @@ TEST(Response, TheMemorialChurchIsWhatItsAuthorsPublished) {
             off.push_back(std::abs(std::expm1(ratio - scale)));
         std::printf("channel %zu: median deviation %.4f of %zu pixels\n", c, median(off),
                     off.size());
-        // Blue is dark, and theirs comes of sixteen exposures: even the curve that their own map
-        // implies for these eight photographs is 5.5 % off.
-        EXPECT_LT(median(off), c == 2 ? 0.06 : 0.03) << "channel " << c;
+        // With the eighth, lossy one it is 2.9 % in red and green and 5.8 % in blue.
+        EXPECT_LT(median(off), c == 2 ? 0.05 : 0.03) << "channel " << c;
     }
 }
 
