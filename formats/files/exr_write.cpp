@@ -159,6 +159,19 @@ exr_result_t Writer::encode(exr_encode_pipeline_t& pipeline,
     return result == EXR_ERR_SUCCESS ? exr_encoding_run(context_, part, &pipeline) : result;
 }
 
+struct EncodedBytes {
+    const void* data;
+    std::uint64_t size;
+};
+
+/// A chunk that compression would not make smaller is stored as it is; OpenEXR 3.1.5 gives it that
+/// size and leaves the compressed bytes, cut off, in its place.
+EncodedBytes encoded_bytes(const exr_encode_pipeline_t& done) {
+    if (done.compressed_bytes < done.packed_bytes)
+        return {done.compressed_buffer, done.compressed_bytes};
+    return {done.packed_buffer, done.packed_bytes};
+}
+
 void Writer::write_pieces(int part, const std::vector<Piece>& pieces) {
     // Compress side by side, then write in order.
     std::vector<exr_encode_pipeline_t> pipelines(pieces.size());
@@ -169,15 +182,15 @@ void Writer::write_pieces(int part, const std::vector<Piece>& pieces) {
     exr_result_t result = EXR_ERR_SUCCESS;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const Chunk& chunk = pieces[k].chunk;
-        const exr_encode_pipeline_t& done = pipelines[k];
+        const EncodedBytes bytes = encoded_bytes(pipelines[k]);
         if (result == EXR_ERR_SUCCESS)
             result = results[k];
         if (result == EXR_ERR_SUCCESS)
-            result = pieces[k].atlas->is_tiled
-                         ? exr_write_tile_chunk(context_, part, chunk.tile_x, chunk.tile_y, 0, 0,
-                                                done.compressed_buffer, done.compressed_bytes)
-                         : exr_write_scanline_chunk(context_, part, chunk.row,
-                                                    done.compressed_buffer, done.compressed_bytes);
+            result =
+                pieces[k].atlas->is_tiled
+                    ? exr_write_tile_chunk(context_, part, chunk.tile_x, chunk.tile_y, 0, 0,
+                                           bytes.data, bytes.size)
+                    : exr_write_scanline_chunk(context_, part, chunk.row, bytes.data, bytes.size);
     }
     for (exr_encode_pipeline_t& pipeline : pipelines)
         exr_encoding_destroy(context_, &pipeline);

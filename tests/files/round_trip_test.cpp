@@ -2,13 +2,16 @@
 // Proves that every field and value of light fields and luminaires survives a file, bit for bit. It
 // does not prove that other programs understand the file: python_reader_test.cpp does.
 #include "formats/files/error.h"
+#include "formats/files/image.h"
 #include "formats/files/lightfield.h"
 #include "formats/files/luminaire.h"
 #include "tests/files/sample_lightfield.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <random>
 
 namespace nearfield::test {
 namespace {
@@ -90,6 +93,24 @@ TEST(LightFieldFile, IsTheSameByteForByteWithoutARunRecord) {
     write_lightfield(sample_lightfield(), std::nullopt, "first.lightfield.exr");
     write_lightfield(sample_lightfield(), std::nullopt, "second.lightfield.exr");
     EXPECT_EQ(read_bytes("first.lightfield.exr"), read_bytes("second.lightfield.exr"));
+}
+
+// Proves that pictures come back bit by bit, those of noise too, which compression only makes
+// larger: from less than a chunk's rows to several.
+TEST(PictureFile, KeepsWhatDoesNotCompress) {
+    for (const glm::ivec2 size_px : {glm::ivec2(1, 1), {5, 3}, {16, 8}, {33, 40}}) {
+        Picture written;
+        written.size_px = size_px;
+        written.layers = {{"", {"R", "G", "B"}, {}}};
+        std::mt19937_64 random(1);
+        for (int k = 0; k < 3 * size_px.x * size_px.y; ++k)  // 23 random bits each
+            written.layers[0].values.push_back(
+                std::ldexp(static_cast<float>(random() >> 41U), static_cast<int>(random() % 60U)));
+        write_picture(written, std::nullopt, "noise.exr");
+        const Picture read = read_picture("noise.exr");
+        ASSERT_EQ(read.layers.size(), 1U);
+        EXPECT_EQ(read.layers[0].values, written.layers[0].values) << size_px.x;
+    }
 }
 
 TEST(LuminaireFile, KeepsEveryTable) {
