@@ -9,7 +9,7 @@
 
 namespace {
 
-using nearfield::photos::Photo;
+using nearfield::photos::Photo, nearfield::photos::RadiancePicture;
 
 constexpr double kMostPixels = 1U << 28U;
 
@@ -39,13 +39,15 @@ void describe(const OIIO::ImageInput& input, Photo& photo) {
     photo.iso = positive(spec, "Exif:PhotographicSensitivity");
 }
 
+bool is_absurd(const OIIO::ImageSpec& spec) {
+    return spec.width < 1 || spec.height < 1 || spec.depth > 1 ||
+           static_cast<double>(spec.width) * spec.height > kMostPixels;
+}
+
 std::string complaint_about(const OIIO::ImageSpec& spec) {
     if (spec.format.is_floating_point())
         return "floating point values";
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 ||
-        static_cast<double>(spec.width) * spec.height > kMostPixels)
-        return "an absurd size";
-    return {};
+    return is_absurd(spec) ? "an absurd size" : "";
 }
 
 void keep_colors(const std::vector<std::uint16_t>& values, int channels, Photo& photo) {
@@ -88,6 +90,31 @@ bool read(const std::string& path, Photo& photo, std::string& complaint) {
     return true;
 }
 
+bool read_light(const std::string& path, RadiancePicture& picture, std::string& complaint) {
+    const auto input = OIIO::ImageInput::open(path);
+    if (!input) {
+        complaint = OIIO::geterror();
+        return false;
+    }
+    const OIIO::ImageSpec spec = input->spec();
+    if (std::string(input->format_name()) != "hdr" || is_absurd(spec)) {
+        complaint = is_absurd(spec) ? "an absurd size" : input->format_name();
+        return false;
+    }
+    const auto channels = static_cast<std::size_t>(spec.nchannels);
+    std::vector<float> values(spec.image_pixels() * channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) {
+        complaint = input->geterror();
+        return false;
+    }
+    picture.size_px = {spec.width, spec.height};
+    picture.rgb.reserve(spec.image_pixels());
+    for (std::size_t k = 0; k < values.size(); k += channels)
+        picture.rgb.push_back(channels < 3 ? glm::vec3(values[k])
+                                           : glm::vec3(values[k], values[k + 1], values[k + 2]));
+    return true;
+}
+
 }  // namespace
 
 extern "C" bool nearfield_read_photo(const std::string& path,
@@ -95,6 +122,17 @@ extern "C" bool nearfield_read_photo(const std::string& path,
                                      std::string& complaint) {
     try {
         return read(path, photo, complaint);
+    } catch (const std::exception& error) {
+        complaint = error.what();
+        return false;
+    }
+}
+
+extern "C" bool nearfield_read_radiance(const std::string& path,
+                                        RadiancePicture& picture,
+                                        std::string& complaint) {
+    try {
+        return read_light(path, picture, complaint);
     } catch (const std::exception& error) {
         complaint = error.what();
         return false;

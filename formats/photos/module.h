@@ -10,3 +10,8 @@
 extern "C" bool nearfield_read_photo(const std::string& path,
                                      nearfield::photos::Photo& photo,
                                      std::string& complaint);
+
+/// The same of a picture of light.
+extern "C" bool nearfield_read_radiance(const std::string& path,
+                                        nearfield::photos::RadiancePicture& picture,
+                                        std::string& complaint);

@@ -29,20 +29,37 @@ void* open_module() {
                 reason};
 }
 
+/// A function of the module, found once.
+template <typename Function>
+Function* function_of_module(const char* name) {
+    static void* const module = open_module();
+    auto* function = reinterpret_cast<Function*>(dlsym(module, name));
+    if (function == nullptr)
+        throw Error{"cannot read photographs", "nearfield_photos.so", "this program's own module",
+                    "another"};
+    return function;
+}
+
 }  // namespace
 
 Photo read_photo(const std::string& path) {
-    static void* const module = open_module();
     static const auto read =
-        reinterpret_cast<decltype(&nearfield_read_photo)>(dlsym(module, "nearfield_read_photo"));
-    if (read == nullptr)
-        throw Error{"cannot read photographs", "nearfield_photos.so", "this program's own module",
-                    "another"};
+        function_of_module<decltype(nearfield_read_photo)>("nearfield_read_photo");
     Photo photo;
     std::string complaint;
     if (!read(path, photo, complaint))
         throw Error{"cannot read photograph", path, "PNG, JPEG, TIFF or raw", complaint};
     return photo;
+}
+
+RadiancePicture read_radiance(const std::string& path) {
+    static const auto read =
+        function_of_module<decltype(nearfield_read_radiance)>("nearfield_read_radiance");
+    RadiancePicture picture;
+    std::string complaint;
+    if (!read(path, picture, complaint))
+        throw Error{"cannot read picture of light", path, "Radiance (.hdr)", complaint};
+    return picture;
 }
 
 }  // namespace nearfield::photos

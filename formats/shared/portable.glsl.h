@@ -36,7 +36,7 @@ using glm::ivec2, glm::ivec3, glm::ivec4;
 using glm::uvec2, glm::uvec3, glm::uvec4;
 using glm::vec2, glm::vec3, glm::vec4;
 
-using glm::abs, glm::ceil, glm::floor, glm::fract, glm::round, glm::sign, glm::trunc;
+using glm::abs, glm::atan, glm::ceil, glm::floor, glm::fract, glm::round, glm::sign, glm::trunc;
 using glm::clamp, glm::max, glm::min, glm::mix, glm::step;
 using glm::cos, glm::exp, glm::exp2, glm::inversesqrt, glm::log, glm::log2, glm::pow, glm::sin,
     glm::sqrt;

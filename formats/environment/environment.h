@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Light that arrives from far away in all directions: latitude-longitude pictures of it, and what
+/// renderers read of them. Rotation and intensity are the scene's, and change nothing here.
+///
+/// Directions are of the picture's own frame, of unit length. Values are the file's; what unit they
+/// have the scene says.
+#pragma once
+
+#include "formats/environment/irradiance.h"
+#include "formats/environment/latlong.h"
+#include "formats/environment/paraboloid_map.h"
+#include "formats/environment/sky_table.h"
+
+#include <optional>
+#include <string>
+
+namespace nearfield::environment {
+
+/// Which parts are made.
+struct Parts {
+    bool maps = false;        // for filtered samples
+    bool table = false;       // for samples by luminance
+    bool irradiance = false;  // for diffuse surfaces
+    bool is_gray = false;     // luminance in place of colors
+};
+
+struct Environment {
+    LatLong picture;
+    std::optional<ParaboloidMap> maps;
+    std::optional<SkyTable> table;
+    std::optional<IrradianceHarmonics> irradiance;
+};
+
+Environment prepare(LatLong picture, const Parts& parts);
+
+/// Memory of the parts, the picture included.
+double bytes(const Environment& environment);
+
+}  // namespace nearfield::environment
