@@ -20,6 +20,8 @@ void check_files(const RenderCommand& command, const Scene& scene) {
     std::vector<std::string> inputs = {command.scene};
     for (const LuminaireInstance& lamp : scene.luminaires)
         inputs.push_back(lamp.path);
+    if (scene.environment)
+        inputs.push_back(scene.environment->path);
     if (!command.compare.empty())
         inputs.push_back(command.compare);
     check_outputs({command.output.path, command.png}, inputs);

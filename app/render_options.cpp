@@ -70,6 +70,32 @@ void add_shadow_map_options(CLI::App& sub, RenderCommand& c) {
                "light by the mean over its cells, to compare with");
 }
 
+void add_environment_options(CLI::App& sub, RenderCommand& c) {
+    render::EnvironmentOptions& around = c.options.environment;
+    add_choice(sub, "--environment", around.method,
+               {{"filtered", render::EnvironmentMethod::Filtered},
+                {"lights", render::EnvironmentMethod::Lights},
+                {"resampled", render::EnvironmentMethod::Resampled},
+                {"reference", render::EnvironmentMethod::Reference}},
+               "how its light is found: filtered by harmonics and filtered samples, without noise; "
+               "reference by --samples with a ray each; lights and resampled are there to compare "
+               "with");
+    add_number(sub, "--environment-samples", around.samples, 1, render::kMostSamples, "N",
+               "filtered samples of a glossy pixel");
+    add_choice(sub, "--environment-level", around.level,
+               {{"fis", render::FilterLevel::Fis},
+                {"gems", render::FilterLevel::Gems},
+                {"none", render::FilterLevel::None}},
+               "how far they are blurred: as a paper does, or not at all, to compare with");
+    sub.add_flag("--environment-anisotropic", around.is_anisotropic,
+                 "several lookups along what a filtered sample stands for; slower");
+    sub.add_flag("--environment-shift", around.is_shifted,
+                 "other filtered samples for each pixel: noise in place of structured error");
+    add_number(sub, "--environment-directions", around.directions, 0, 4096, "N",
+               "in which filtered light asks whether the sky is visible, 0: in none; of lights: "
+               "how many");
+}
+
 struct EffectName {
     const char* name;
     render::Switch render::Effects::*effect;
@@ -77,7 +103,8 @@ struct EffectName {
 constexpr EffectName kEffects[] = {{"color", &render::Effects::color},
                                    {"shadows", &render::Effects::shadows},
                                    {"gloss", &render::Effects::gloss},
-                                   {"tone-mapping", &render::Effects::tone_mapping}};
+                                   {"tone-mapping", &render::Effects::tone_mapping},
+                                   {"environment", &render::Effects::environment}};
 constexpr std::pair<const char*, render::Switch> kSwitches[] = {
     {"auto", render::Switch::Auto}, {"on", render::Switch::On}, {"off", render::Switch::Off}};
 
@@ -140,6 +167,7 @@ void add_render_options(CLI::App& sub, RenderCommand& c) {
     add_picture_options(sub, c);
     add_light_options(sub, c);
     add_effect_options(sub, c);
+    add_environment_options(sub, c);
     add_shadow_map_options(sub, c);
     add_number(sub, "--threads", c.options.threads, 0, 4096, "N",
                "0: all cores; the picture is the same");

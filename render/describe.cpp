@@ -102,9 +102,14 @@ std::string summary(const Noise& noise) {
         100.0 * noise.mean_rel, 100.0 * noise.p95_rel, 100.0 * noise.share_above_10_percent, bias);
 }
 
-Noise summarize_noise(const Layer& radiance, const Layer& sigma, const Layer* bias) {
+Noise summarize_noise(const Layer& radiance,
+                      const Layer& sigma,
+                      const Layer* bias,
+                      const Layer* depth) {
     constexpr float kFloor = 1e-3F;  // of the largest, as for relative RMS
     const auto luminance = [&](std::size_t i) {
+        if (depth != nullptr && depth->values[i] == 0.0F)
+            return 0.0F;
         return shared::luminance709(
             {radiance.values[3 * i], radiance.values[3 * i + 1], radiance.values[3 * i + 2]});
     };
@@ -147,6 +152,7 @@ std::string forced_effects(const Effects& effects) {
     add("shadows", effects.shadows);
     add("gloss", effects.gloss);
     add("tone-mapping", effects.tone_mapping);
+    add("environment", effects.environment);
     return text;
 }
 
@@ -181,6 +187,18 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
         provenance.options.emplace_back("shadow-taps", fmt::format("{}", maps.pcf_taps));
         provenance.options.emplace_back(
             "shadow-weights", options.shadow_weights == ShadowWeights::Pdis ? "pdis" : "shares");
+    }
+    if (report.plan.has_environment) {
+        const EnvironmentOptions& around = options.environment;
+        provenance.options.emplace_back("environment-method", name_of(around.method));
+        provenance.options.emplace_back("environment-samples", fmt::format("{}", around.samples));
+        provenance.options.emplace_back("environment-level", name_of(around.level));
+        provenance.options.emplace_back("environment-anisotropic",
+                                        around.is_anisotropic ? "true" : "false");
+        provenance.options.emplace_back("environment-directions",
+                                        fmt::format("{}", around.directions));
+        provenance.options.emplace_back("environment-shift", around.is_shifted ? "true" : "false");
+        provenance.inputs.push_back(describe_input(scene.environment->path));
     }
     std::set<std::string> seen;
     for (const LuminaireInstance& luminaire : scene.luminaires)

@@ -12,7 +12,9 @@ namespace nearfield::render {
 namespace {
 
 /// Why not by OpenGL; nothing where it can be.
-std::optional<std::string> reason_for_cpu(const RenderOptions& options) {
+std::optional<std::string> reason_for_cpu(const Scene& scene, const RenderOptions& options) {
+    if (scene.environment && options.effects.environment != Switch::Off)
+        return "the scene has an environment";
     if (options.sigma_measured)
         return "sigma_measured is asked for";
     try {
@@ -24,7 +26,7 @@ std::optional<std::string> reason_for_cpu(const RenderOptions& options) {
 }
 
 Rendered render_auto(const Scene& scene, const RenderOptions& options, const RenderHooks& hooks) {
-    const std::optional<std::string> reason = reason_for_cpu(options);
+    const std::optional<std::string> reason = reason_for_cpu(scene, options);
     Rendered rendered =
         reason ? render_cpu(scene, options, hooks) : render_gl(scene, options, hooks);
     rendered.report.device_reason =

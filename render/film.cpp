@@ -88,7 +88,7 @@ glm::dvec3 camera_ray(const Camera& camera, glm::ivec2 size_px, glm::dvec2 posit
     return glm::normalize(glm::dmat3(camera.world_from_camera) * direction);
 }
 
-Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_sigma_measured) {
+Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, const MoreLayers& more) {
     Picture picture;
     picture.size_px = size_px;
     const std::vector<std::string> rgb = {"R", "G", "B"};
@@ -96,11 +96,20 @@ Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_sigma_meas
                       {"depth", {"Z"}, {}}, {"normal", {"X", "Y", "Z"}, {}}, {"sigma", {"Y"}, {}}};
     for (const Lamp& lamp : lamps.lamps)
         picture.layers.push_back({"lamp." + lamp.name, rgb, {}});
-    if (has_sigma_measured)
+    if (more.environment)
+        picture.layers.push_back({"environment", rgb, {}});
+    if (more.sigma_measured)
         picture.layers.push_back({"sigma_measured", {"Y"}, {}});
     check_memory(picture);
     allocate(picture);
     return picture;
+}
+
+std::optional<std::size_t> find_layer(const Picture& picture, const std::string& name) {
+    for (std::size_t k = 0; k < picture.layers.size(); ++k)
+        if (picture.layers[k].name == name)
+            return k;
+    return std::nullopt;
 }
 
 std::size_t add_bias_layer(Picture& picture) {

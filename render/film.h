@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace nearfield::render {
@@ -41,9 +42,18 @@ enum LayerIndex : std::size_t {
     kFirstLamp
 };
 
-/// All layers, black: those above, one a lamp, and sigma_measured, the last, if asked for. Throws
-/// Error if the picture is larger than the memory that is left.
-Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, bool has_sigma_measured);
+/// Layers that not every picture has.
+struct MoreLayers {
+    bool environment = false;
+    bool sigma_measured = false;
+};
+
+/// All layers, black: those above, one a lamp, then environment and sigma_measured, if asked for.
+/// Throws Error if the picture is larger than the memory that is left.
+Picture make_picture(const Lamps& lamps, glm::ivec2 size_px, const MoreLayers& more);
+
+/// Where the layer of that name is, or nothing.
+std::optional<std::size_t> find_layer(const Picture& picture, const std::string& name);
 
 /// Adds the layer bias_bound, black; returns its index.
 std::size_t add_bias_layer(Picture& picture);

@@ -34,6 +34,9 @@ struct Needs {
     std::vector<LampNeed> lamps;  // as in Lamps
     Need shadows;                 // of any lamp
     Need color, gloss, tone_mapping;
+    Need environment;  // the scene has one that is not dimmed to 0
+    Need diffuse;      // a material in use has a diffuse part
+    Need sky_shadows;  // something may stand before it: triangles of more than one plane
 };
 
 /// What the scene calls for; what options.effects force is the plan's business (plan.h).
@@ -42,7 +45,7 @@ struct Needs {
 /// Shadows  per lamp: called for unless each plane of a triangle that could stop its light has the
 ///          lamp's U rectangles and all geometry in its beam on one side. Exact where it says no;
 ///          where triangles lie in more than 64 planes it says yes.
-/// Color    a lamp of three channels, or a material that is not gray.
+/// Color    a lamp of three channels, a material that is not gray, or an environment.
 /// Gloss    a material with a lobe.
 ///
 /// Cost     shadows: at most 64 times the vertices a lamp.

@@ -40,13 +40,14 @@ Opening open_scene(const Scene& scene,
     const Camera& camera = find_camera(scene, options.camera);
     const double start_s = now_s();
     Opening opening{camera, load_lamps(scene, parts_of(scene, options, device)),
-                    complete_size(options.size_px, camera)};
+                    complete_size(options.size_px, camera), std::nullopt};
     report.has_sigma_measured =
         std::any_of(opening.lamps.lamps.begin(), opening.lamps.lamps.end(),
                     [](const Lamp& lamp) { return lamp.file->measured.has_value(); });
     report.quantity = opening.lamps.quantity;
-    report.load_s = now_s() - start_s;
     report.plan = plan_of(scene, opening.lamps, options, opening.size_px, device);
+    opening.sky = load_sky(scene, report.plan, options.environment);
+    report.load_s = now_s() - start_s;
     return opening;
 }
 

@@ -5,8 +5,11 @@
 #include "formats/scene/scene.h"
 #include "render/lamps.h"
 #include "render/report.h"
+#include "render/sky.h"
 
 #include <glm/glm.hpp>
+
+#include <optional>
 
 namespace nearfield::render {
 
@@ -26,11 +29,12 @@ struct Opening {
     const Camera& camera;  // of the scene
     Lamps lamps;
     glm::ivec2 size_px{0};
+    std::optional<Sky> sky;  // where the plan has an environment
 };
 
-/// Loads the lamps with the parts that the device's passes read, and plans; fills the report's
-/// quantity, load_s, has_sigma_measured and plan. Throws Error where the camera or a light field is
-/// missing or not one.
+/// Loads lamps and environment with the parts that the device's passes read, and plans; fills the
+/// report's quantity, load_s, has_sigma_measured and plan. Throws Error where the camera or a light
+/// field is missing or not one.
 Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,

@@ -24,6 +24,30 @@ void check_range(const char* option, int value, int least, int most, const char*
 
 }  // namespace
 
+const char* name_of(EnvironmentMethod method) {
+    switch (method) {
+        case EnvironmentMethod::Lights:
+            return "lights";
+        case EnvironmentMethod::Resampled:
+            return "resampled";
+        case EnvironmentMethod::Reference:
+            return "reference";
+        default:
+            return "filtered";
+    }
+}
+
+const char* name_of(FilterLevel level) {
+    switch (level) {
+        case FilterLevel::Gems:
+            return "gems";
+        case FilterLevel::None:
+            return "none";
+        default:
+            return "fis";
+    }
+}
+
 void check(const ShadowMapOptions& options) {
     check_range("shadow maps", options.maps, 0, 1 << 16, " (one a cell)");
     check_range("shadow map's side", options.map_px, 1, kMaxExtentPx);
@@ -56,6 +80,8 @@ void check(const RenderOptions& options) {
         refuse("time", "0 (no limit) or more", fmt::format("{} s", options.time_s));
     if (options.sigma_measured && options.device == Device::Gl)
         refuse("sigma measured", "device cpu", "gl");
+    check_range("environment samples", options.environment.samples, 1, kMostSamples);
+    check_range("environment directions", options.environment.directions, 0, 4096);
     check_range("threads", options.threads, 0, 4096, " (all)");
 }
 

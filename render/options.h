@@ -28,6 +28,31 @@ struct Effects {
     Switch shadows = Switch::Auto;       // off: light passes through everything
     Switch gloss = Switch::Auto;         // off: the materials' diffuse parts alone
     Switch tone_mapping = Switch::Auto;  // off: no picture for a display
+    Switch environment = Switch::Auto;   // off: darkness all around; on changes nothing
+};
+
+/// How an environment's light is found.
+enum class EnvironmentMethod {
+    Filtered,   // diffuse by spherical harmonics, gloss by filtered samples: no noise, a bias
+    Lights,     // as far lamps, drawn by luminance, the same for every pixel; a baseline
+    Resampled,  // samples with a ray each, chosen among more by all but visibility; a baseline
+    Reference,  // samples of sky and BRDF with a ray each: unbiased, noise
+};
+
+/// How far filtered samples are blurred (formats/shared/filtered_samples.glsl.h).
+enum class FilterLevel { Fis, Gems, None };
+
+const char* name_of(EnvironmentMethod method);
+const char* name_of(FilterLevel level);
+
+struct EnvironmentOptions {
+    EnvironmentMethod method = EnvironmentMethod::Filtered;
+    int samples = 40;  // filtered ones of a glossy pixel; Resampled and Reference draw
+                       // RenderOptions::samples
+    FilterLevel level = FilterLevel::Fis;
+    bool is_anisotropic = false;  // several lookups along what a sample stands for
+    bool is_shifted = false;      // a random shift a pixel: noise in place of structured error
+    int directions = 16;  // in which filtered light asks for visibility, 0: none; of Lights: lamps
 };
 
 /// What stands for all points of a cell of a lamp's U plane.
@@ -87,6 +112,7 @@ struct RenderOptions {
     bool sigma_measured = false;
 
     Effects effects;
+    EnvironmentOptions environment;
     ShadowMapOptions shadow_maps;  // OpenGL alone
     ShadowWeights shadow_weights = ShadowWeights::Shares;
     bool is_displayed = false;  // the caller tone-maps the picture

@@ -117,6 +117,41 @@ Decision gloss(const Context& at) {
     return decide("gloss", at.options.effects.gloss, at.needs.gloss);
 }
 
+Decision environment(const Context& at) {
+    // There is no turning on what is not there.
+    if (!at.needs.environment.is_called_for)
+        return at.needs.environment;
+    return decide("environment", at.options.effects.environment, at.needs.environment);
+}
+
+std::string method_name(const Context& at) {
+    return fmt::format("--environment {}", name_of(at.options.environment.method));
+}
+
+bool is_filtered(const Context& at) {
+    return at.options.environment.method == EnvironmentMethod::Filtered;
+}
+
+Decision environment_irradiance(const Context& at) {
+    if (!at.plan.has_environment)
+        return {false, environment(at).reason};
+    return is_filtered(at) ? at.needs.diffuse : Decision{false, method_name(at)};
+}
+
+Decision environment_samples(const Context& at) {
+    if (!at.plan.has_environment)
+        return {false, environment(at).reason};
+    return is_filtered(at) ? gloss(at) : Decision{true, method_name(at)};
+}
+
+Decision environment_rays(const Context& at) {
+    if (!at.plan.has_environment)
+        return {false, environment(at).reason};
+    if (is_filtered(at) && at.options.environment.directions == 0)
+        return {false, "--environment-directions 0"};
+    return decide("shadows", at.options.effects.shadows, at.needs.sky_shadows);
+}
+
 Decision accumulate(const Context& at) {
     if (at.options.error_rel > 0.0 || at.options.time_s > 0.0)
         return {true, "passes until an error or a time is reached"};
@@ -207,6 +242,10 @@ constexpr Row kPasses[] = {
     {Device::Cpu, PassId::Samples, "samples", "draws points on the lamps", samples, sampler_bytes},
     {Device::Cpu, PassId::ShadowRays, "shadow rays", "asks whether they are visible", shadow_rays, no_bytes},
     {Device::Cpu, PassId::Gloss, "gloss", "reflects light by materials' lobes", gloss, table_bytes_of},
+    {Device::Cpu, PassId::Environment, "environment", "shows what is around where nothing is before it", environment, no_bytes},
+    {Device::Cpu, PassId::EnvironmentIrradiance, "sky irradiance", "lights diffuse surfaces by spherical harmonics", environment_irradiance, no_bytes},
+    {Device::Cpu, PassId::EnvironmentSamples, "sky samples", "reflects what is around by materials' lobes", environment_samples, no_bytes},
+    {Device::Cpu, PassId::EnvironmentRays, "sky rays", "asks whether what is around is visible", environment_rays, no_bytes},
     {Device::Cpu, PassId::ToneMapping, "tone mapping", "makes a picture for displays", tone_mapping, display_bytes},
 
     {Device::Gl, PassId::GBuffer, "g-buffer", "draws what each pixel sees", always, g_buffer_bytes},
@@ -263,7 +302,13 @@ Plan plan_of(const Scene& scene,
                                    [](const LampPlan& lamp) { return lamp.has_shadows; });
     plan.has_gloss = is_on(effects.gloss, needs.gloss);
     plan.has_tone_mapping = is_on(effects.tone_mapping, needs.tone_mapping);
-    plan.draws_samples = options.sampler.has_value() || plan.has_shadows || plan.has_gloss;
+    plan.has_environment =
+        needs.environment.is_called_for && is_on(effects.environment, needs.environment);
+    plan.draws_sky =
+        plan.has_environment && (options.environment.method == EnvironmentMethod::Reference ||
+                                 options.environment.method == EnvironmentMethod::Resampled);
+    plan.draws_samples =
+        plan.draws_sky || options.sampler.has_value() || plan.has_shadows || plan.has_gloss;
     plan.unlit = needs.unlit;
     plan.passes = planned_passes({scene, lamps, options, size_px, needs, plan});
     return plan;

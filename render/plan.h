@@ -23,7 +23,11 @@ enum class PassId {
     Samples,
     ShadowRays,  // CPU
     Gloss,
-    Accumulate,  // GPU: passes added up
+    Environment,            // CPU: what is seen past everything
+    EnvironmentIrradiance,  // CPU: diffuse surfaces
+    EnvironmentSamples,     // CPU: gloss; all surfaces where a reference is asked for
+    EnvironmentRays,        // CPU: whether the sky is visible
+    Accumulate,             // GPU: passes added up
     ToneMapping,
 };
 
@@ -57,6 +61,8 @@ struct Plan {
     bool has_shadows = true;  // of any lamp
     bool has_gloss = true;
     bool has_tone_mapping = false;
+    bool has_environment = false;
+    bool draws_sky = false;       // its light by random samples, so that there is noise
     bool draws_samples = true;    // so that there may be noise
     std::vector<LampPlan> lamps;  // as in Lamps
     std::vector<UnlitLamp> unlit;

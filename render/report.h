@@ -28,9 +28,13 @@ struct Noise {
     double error_rel() const { return mean_rel + bias_mean_rel; }
 };
 
-/// Of a picture's layers: radiance R, G, B, sigma Y and, where not null, bias_bound Y. All 0 where
-/// nothing is lit.
-Noise summarize_noise(const Layer& radiance, const Layer& sigma, const Layer* bias = nullptr);
+/// Of a picture's layers: radiance R, G, B, sigma Y and, where not null, bias_bound Y and depth Z.
+/// Pixels of depth 0 see an environment past everything: they do not count, nor does it count as
+/// the brightest. All 0 where nothing is lit.
+Noise summarize_noise(const Layer& radiance,
+                      const Layer& sigma,
+                      const Layer* bias = nullptr,
+                      const Layer* depth = nullptr);
 
 /// What a pass took.
 struct PassReport {

@@ -17,8 +17,13 @@ Environment prepare(LatLong picture, const Parts& parts) {
         environment.maps = make_paraboloid_map(environment.picture);
     if (parts.table)
         environment.table = make_sky_table(environment.picture);
-    if (parts.irradiance)
-        environment.irradiance = project_irradiance(environment.picture);
+    if (parts.harmonics)
+        environment.harmonics = project(environment.picture);
+    if (parts.directions > 0)
+        environment.directions = make_visibility_fit(
+            environment.picture,
+            environment.table ? *environment.table : make_sky_table(environment.picture),
+            parts.directions);
     return environment;
 }
 

@@ -6,10 +6,11 @@
 /// have the scene says.
 #pragma once
 
-#include "formats/environment/irradiance.h"
+#include "formats/environment/harmonics.h"
 #include "formats/environment/latlong.h"
 #include "formats/environment/paraboloid_map.h"
 #include "formats/environment/sky_table.h"
+#include "formats/environment/visibility_fit.h"
 
 #include <optional>
 #include <string>
@@ -18,17 +19,19 @@ namespace nearfield::environment {
 
 /// Which parts are made.
 struct Parts {
-    bool maps = false;        // for filtered samples
-    bool table = false;       // for samples by luminance
-    bool irradiance = false;  // for diffuse surfaces
-    bool is_gray = false;     // luminance in place of colors
+    bool maps = false;       // for filtered samples
+    bool table = false;      // for samples by luminance
+    bool harmonics = false;  // for diffuse surfaces
+    int directions = 0;      // for shadows of filtered light, or as so many far lamps
+    bool is_gray = false;    // luminance in place of colors
 };
 
 struct Environment {
     LatLong picture;
     std::optional<ParaboloidMap> maps;
     std::optional<SkyTable> table;
-    std::optional<IrradianceHarmonics> irradiance;
+    std::optional<Harmonics> harmonics;
+    std::optional<VisibilityFit> directions;
 };
 
 Environment prepare(LatLong picture, const Parts& parts);

@@ -24,12 +24,12 @@ struct ParaboloidMap {
 /// equator.
 int side_for(const LatLong& picture);
 
-/// Means of the picture over texels, by 8 x 8 points in each; then over 2 x 2 texels, level by
+/// Means of the picture over texels, by 4 x 4 points in each; then over 2 x 2 texels, level by
 /// level.
 ///
 /// side_px  a power of two; 0: side_for(picture)
 /// Error    light that arrives through the map, relative: docs/environments.md
-/// Cost     128 lookups for each texel of the finest level; parallel (TBB). Memory 32 bytes a
+/// Cost     32 lookups for each texel of the finest level; parallel (TBB). Memory 32 bytes a
 /// texel.
 ParaboloidMap make_paraboloid_map(const LatLong& picture, int side_px = 0);
 

@@ -15,10 +15,6 @@
 namespace nearfield::environment {
 namespace {
 
-std::size_t to_size(int n) {
-    return static_cast<std::size_t>(n);
-}
-
 /// The picture as the only image of a luminaire: what is drawn by is luminance times solid angle.
 Slab as_slab(const LatLong& picture) {
     Slab slab;
@@ -43,7 +39,8 @@ shared::StoredCdf columns(const SkyTable& table) {
 }
 
 shared::StoredCdf rows(const SkyTable& table, int column) {
-    return {table.row_cdf.data() + to_size(column) * to_size(table.size_px.y + 1)};
+    return {table.row_cdf.data() +
+            static_cast<std::size_t>(column) * static_cast<std::size_t>(table.size_px.y + 1)};
 }
 
 float pixel_density(const SkyTable& table, glm::ivec2 pixel) {

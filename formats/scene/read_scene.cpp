@@ -13,7 +13,8 @@
 namespace nearfield {
 namespace {
 
-using gltf::kBrdfExtension, gltf::kLuminaireExtension, gltf::kReadingScene, gltf::Reading;
+using gltf::kBrdfExtension, gltf::kEnvironmentExtension, gltf::kLuminaireExtension,
+    gltf::kReadingScene, gltf::Reading;
 
 tinygltf::Model load_model(const std::string& path, const gltf::GuardedFile& file) {
     tinygltf::TinyGLTF loader;
@@ -45,9 +46,10 @@ tinygltf::Model load_model(const std::string& path, const gltf::GuardedFile& fil
 
 void check_extensions(const Reading& reading) {
     for (const std::string& name : reading.model.extensionsRequired)
-        if (name != kLuminaireExtension && name != kBrdfExtension)
+        if (name != kLuminaireExtension && name != kBrdfExtension && name != kEnvironmentExtension)
             throw Error{kReadingScene, reading.at("extensionsRequired"),
-                        fmt::format("{} or {}", kLuminaireExtension, kBrdfExtension),
+                        fmt::format("{}, {} or {}", kLuminaireExtension, kBrdfExtension,
+                                    kEnvironmentExtension),
                         name.substr(0, 60)};
     const auto& used = reading.model.extensionsUsed;
     const auto demand = [&](const char* name, bool is_used) {
@@ -55,6 +57,7 @@ void check_extensions(const Reading& reading) {
             throw Error{kReadingScene, reading.at("extensionsUsed"), name, "none"};
     };
     demand(kLuminaireExtension, !reading.scene.luminaires.empty());
+    demand(kEnvironmentExtension, reading.scene.environment.has_value());
     demand(kBrdfExtension,
            std::any_of(reading.scene.materials.begin(), reading.scene.materials.end(),
                        [](const Material& material) { return material.given_brdf.has_value(); }));
@@ -87,6 +90,7 @@ Scene read_scene(const std::string& path) {
     gltf::read_materials(reading);
     gltf::read_meshes(reading);
     gltf::read_nodes(reading);
+    gltf::read_environment(reading);
     check_extensions(reading);
     check_excludes(reading);
     return std::move(reading.scene);

@@ -15,6 +15,7 @@
 namespace nearfield::gltf {
 
 constexpr const char* kLuminaireExtension = "NEARFIELD_luminaire";
+constexpr const char* kEnvironmentExtension = "NEARFIELD_environment";
 
 /// The document and what its parts have become.
 struct Reading {
@@ -36,5 +37,8 @@ void read_meshes(Reading& reading);
 
 /// Instances, cameras and luminaires.
 void read_nodes(Reading& reading);
+
+/// Of the scene that is shown.
+void read_environment(Reading& reading);
 
 }  // namespace nearfield::gltf

@@ -70,12 +70,21 @@ struct LuminaireInstance {
     std::vector<std::string> excludes;  // nodes or meshes by name that cast no shadow in its light
 };
 
+/// Light from far away all around (formats/environment).
+struct SceneEnvironment {
+    std::string uri;   // of the latitude-longitude picture, relative to the scene's folder
+    std::string path;  // the file that uri names
+    glm::dmat3 world_from_environment{1.0};  // a rotation
+    double intensity = 1.0;                  // radiance is the picture's times this, >= 0
+};
+
 struct Scene {
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<Camera> cameras;
     std::vector<LuminaireInstance> luminaires;
+    std::optional<SceneEnvironment> environment = std::nullopt;
     std::vector<std::string> notes;  // what the file holds and this reader leaves out
 };
 
@@ -86,7 +95,7 @@ bool is_excluded(const Scene& scene, const LuminaireInstance& luminaire, const I
 /// Throws Error naming `where` if the matrix scales the axes differently or shears.
 double uniform_scale(const glm::dmat4& matrix, const std::string& where);
 
-/// Reads .gltf or .glb. Luminaires are not opened.
+/// Reads .gltf or .glb. Luminaires and the environment are not opened.
 /// Throws Error with file and JSON place, such as "scene.gltf:
 /// nodes[3].extensions.NEARFIELD_luminaire.dim".
 Scene read_scene(const std::string& path);

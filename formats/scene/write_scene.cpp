@@ -6,6 +6,7 @@
 #include "formats/scene/reading.h"
 #include "formats/scene/scene.h"
 
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
@@ -130,6 +131,18 @@ tinygltf::Value to_gltf(const LuminaireInstance& lamp) {
     return tinygltf::Value(extension);
 }
 
+tinygltf::Value to_gltf(const SceneEnvironment& environment) {
+    const glm::dquat rotation = glm::quat_cast(environment.world_from_environment);
+    tinygltf::Value::Array xyzw;
+    for (const double value : {rotation.x, rotation.y, rotation.z, rotation.w})
+        xyzw.emplace_back(value);
+    tinygltf::Value::Object extension;
+    extension["uri"] = tinygltf::Value(environment.uri);
+    extension["rotation"] = tinygltf::Value(xyzw);
+    extension["intensity"] = tinygltf::Value(environment.intensity);
+    return tinygltf::Value(extension);
+}
+
 tinygltf::Node& add_node(tinygltf::Model& model,
                          const std::string& name,
                          const glm::dmat4& matrix) {
@@ -178,6 +191,10 @@ void write_scene(const Scene& scene, const std::string& path, BufferPlace buffer
         model.meshes.push_back(to_gltf(model, mesh));
     }
     add_nodes(model, scene);
+    if (scene.environment) {
+        model.scenes[0].extensions[gltf::kEnvironmentExtension] = to_gltf(*scene.environment);
+        model.extensionsUsed.emplace_back(gltf::kEnvironmentExtension);
+    }
     if (!scene.luminaires.empty())
         model.extensionsUsed.emplace_back(gltf::kLuminaireExtension);
     if (std::any_of(scene.materials.begin(), scene.materials.end(),

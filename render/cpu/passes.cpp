@@ -96,7 +96,8 @@ Noise noise_so_far(const Run& run) {
     for (float& value : sigma.values)
         value = root * std::sqrt(value);
     return summarize_noise(layers[kRadiance], sigma,
-                           run.frame.bias_layer ? &layers[*run.frame.bias_layer] : nullptr);
+                           run.frame.bias_layer ? &layers[*run.frame.bias_layer] : nullptr,
+                           &layers[kDepth]);
 }
 
 /// The time of a whole pass, from some of its tiles spread over the frame.
@@ -162,6 +163,7 @@ TileReport total_of(const std::vector<TileReport>& reports) {
         total.shading_s += tile.shading_s;
         total.shadow_rays_s += tile.shadow_rays_s;
         total.gloss_s += tile.gloss_s;
+        total.sky_s += tile.sky_s;
     }
     return total;
 }
@@ -171,7 +173,7 @@ void fill_report(const TileReport& total, double wall_s, RenderReport& report) {
     report.camera_rays = total.camera_rays;
     report.shadow_rays = total.shadow_rays;
     report.multiply_adds = static_cast<double>(total.multiply_adds);
-    const double spent_s = total.camera_s + total.sums_s + total.shading_s;
+    const double spent_s = total.camera_s + total.sums_s + total.shading_s + total.sky_s;
     const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;
     report.camera_s = total.camera_s * share;
     report.sums_s = total.sums_s * share;
@@ -189,6 +191,10 @@ void fill_report(const TileReport& total, double wall_s, RenderReport& report) {
     cost(PassId::Samples, rest_s);
     cost(PassId::ShadowRays, total.shadow_rays_s * share);
     cost(PassId::Gloss, total.gloss_s * share);
+    // One time for all that the sky gives: with the pass that takes most of it.
+    cost(has_pass(report.plan, PassId::EnvironmentSamples) ? PassId::EnvironmentSamples
+                                                           : PassId::EnvironmentIrradiance,
+         total.sky_s * share);
 }
 
 }  // namespace

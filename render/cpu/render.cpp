@@ -48,22 +48,29 @@ Rendered render_cpu(const Scene& scene, const RenderOptions& options, const Rend
     const Tracer tracer(scene, lamps.instance_masks, threads);
     report.build_s = now_s() - build_start_s;
 
-    result.picture = make_picture(lamps, opening.size_px, report.has_sigma_measured);
-    Frame frame{scene, options, opening.camera, lamps, tracer, report.plan, result.picture, {}, 1,
-                {},    {}};
+    result.picture = make_picture(lamps, opening.size_px,
+                                  {report.plan.has_environment, report.has_sigma_measured});
+    Frame frame{
+        scene, options, opening.camera, lamps, tracer, report.plan, result.picture, {}, 1, {},
+        {},    {},      nullptr};
     frame.strata = strata_per_side(options.samples_per_pixel);
     for (const Material& material : scene.materials)
         frame.brdfs.push_back(planned_brdf(material, report.plan));
-    if (report.has_sigma_measured)
-        frame.measured_layer = result.picture.layers.size() - 1;
+    frame.measured_layer = find_layer(result.picture, "sigma_measured");
+    frame.environment_layer = find_layer(result.picture, "environment");
+    frame.sky = opening.sky ? &*opening.sky : nullptr;
     tbb::task_arena arena(threads);
     arena.execute([&] { render_passes(frame, call.hooks, call.start_s, report); });
     for (PassReport& cost : report.costs)
         cost.bytes = cost.id == PassId::CameraRays ? tracer.bytes() + layer_bytes(result.picture)
                                                    : bytes_of(cost.id, lamps, report);
+    if (opening.sky)
+        report.costs.push_back({PassId::Environment, opening.sky->load_s,
+                                environment::bytes(opening.sky->environment)});
     report.sampling =
         summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma],
-                        frame.bias_layer ? &result.picture.layers[*frame.bias_layer] : nullptr);
+                        frame.bias_layer ? &result.picture.layers[*frame.bias_layer] : nullptr,
+                        &result.picture.layers[kDepth]);
     end_call(call, options, report);
     return result;
 }

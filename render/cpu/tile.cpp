@@ -4,6 +4,7 @@
 #include "formats/shared/rng.glsl.h"
 #include "formats/shared/tonemap.glsl.h"
 #include "render/cpu/lap.h"
+#include "render/cpu/shade_sky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,18 @@ std::size_t index_of(const Frame& frame, glm::ivec2 pixel) {
            static_cast<std::size_t>(pixel.x);
 }
 
+glm::vec3 radiance_from_sky(const Frame& frame, glm::dvec3 direction) {
+    return frame.sky != nullptr ? radiance_from(*frame.sky, glm::vec3(direction)) : glm::vec3(0.0F);
+}
+
+/// Adds radiance of the environment to the picture and to its own layer.
+void add_sky(const Frame& frame, std::size_t pixel, glm::vec3 radiance, float share) {
+    if (frame.sky == nullptr)
+        return;
+    add(frame.picture.layers[kRadiance], pixel, radiance * share);
+    add(frame.picture.layers[*frame.environment_layer], pixel, radiance * share);
+}
+
 /// One camera ray a pixel, the same ones in every pass, and in the first the layers that need no
 /// light.
 void trace_camera(const Frame& frame,
@@ -69,8 +82,11 @@ void trace_camera(const Frame& frame,
                 camera_ray(frame.camera, frame.picture.size_px,
                            film_position_px({x, y}, stratum, frame.strata, random.x, random.y));
             const std::optional<Hit> hit = frame.tracer.trace(origin, sample.direction);
-            if (!hit)
+            if (!hit) {
+                add_sky(frame, sample.index, radiance_from_sky(frame, sample.direction),
+                        pass.weight / static_cast<float>(strata));
                 continue;
+            }
             sample.brdf = &frame.brdfs[static_cast<std::size_t>(hit->material)];
             sample.frame =
                 shared::frame_from_tangent(glm::vec3(hit->shading_normal), glm::vec3(hit->tangent));
@@ -133,11 +149,28 @@ LampLight shade(const Frame& frame,
     return light;
 }
 
+ShadeQuery query_of(const Frame& frame,
+                    const Pass& pass,
+                    const Block& block,
+                    std::size_t k,
+                    std::uint32_t first_set) {
+    const Sample& sample = block.samples[k];
+    return {block.hits[k],
+            -sample.direction,
+            *sample.brdf,
+            sample.frame,
+            sets_of(frame.options, pass.samples),
+            glm::uvec2(sample.pixel),
+            first_set,
+            frame.options.seed,
+            frame.options.shift,
+            true};
+}
+
 /// Adds one lamp's light to the layers, from sums that are ready.
 void shade_block(
     const Frame& frame, const Pass& pass, int stratum, std::size_t lamp, Block& block) {
     const int strata = frame.strata * frame.strata;
-    const SampleSets sets = sets_of(frame.options, pass.samples);
     const auto lamps = static_cast<std::uint32_t>(frame.lamps.lamps.size());
     // Sets are numbered through passes, camera samples and lamps.
     const std::uint32_t first_set =
@@ -149,16 +182,8 @@ void shade_block(
     std::vector<Layer>& layers = frame.picture.layers;
     for (std::size_t k = 0; k < block.samples.size(); ++k) {
         const Sample& sample = block.samples[k];
-        const ShadeQuery query{block.hits[k],
-                               -sample.direction,
-                               *sample.brdf,
-                               sample.frame,
-                               sets,
-                               glm::uvec2(sample.pixel),
-                               first_set,
-                               frame.options.seed,
-                               frame.options.shift,
-                               frame.plan.lamps[lamp].has_shadows};
+        ShadeQuery query = query_of(frame, pass, block, k, first_set);
+        query.has_shadows = frame.plan.lamps[lamp].has_shadows;
         const LampLight light = shade(frame, query, pass.q, frame.lamps.lamps[lamp], k, block);
         add(layers[kRadiance], sample.index, light.radiance * share);
         add(layers[kIrradiance], sample.index, light.irradiance * share);
@@ -171,6 +196,38 @@ void shade_block(
         // are, an upper bound where files differ.
         if (frame.measured_layer)
             layers[*frame.measured_layer].values[sample.index] += light.sigma_measured_y * share;
+    }
+}
+
+LampLight shade_sky(const SkyQuery& query, Scratch& scratch) {
+    switch (query.options.method) {
+        case EnvironmentMethod::Lights:
+            return shade_sky_lights(query, scratch);
+        case EnvironmentMethod::Resampled:
+            return shade_sky_resampled(query, scratch);
+        case EnvironmentMethod::Reference:
+            return shade_sky_reference(query, scratch);
+        default:
+            return shade_sky_filtered(query, scratch);
+    }
+}
+
+/// Adds the environment's light to the layers.
+void shade_sky_block(const Frame& frame, const Pass& pass, int stratum, Block& block) {
+    const int strata = frame.strata * frame.strata;
+    const auto first_set =
+        (pass.index * static_cast<std::uint32_t>(strata) + static_cast<std::uint32_t>(stratum)) *
+        static_cast<std::uint32_t>(kMostSets);
+    const float share = pass.weight / static_cast<float>(strata);
+    for (std::size_t k = 0; k < block.samples.size(); ++k) {
+        ShadeQuery query = query_of(frame, pass, block, k, first_set);
+        query.has_shadows = has_pass(frame.plan, PassId::EnvironmentRays);
+        const LampLight light =
+            shade_sky({*frame.sky, frame.tracer, query, frame.options.environment}, block.scratch);
+        const std::size_t index = block.samples[k].index;
+        add_sky(frame, index, light.radiance, share);
+        add(frame.picture.layers[kIrradiance], index, light.irradiance * share);
+        frame.picture.layers[kSigma].values[index] += light.variance_y * share * share;
     }
 }
 
@@ -187,6 +244,10 @@ void render_block(const Frame& frame,
         report.camera_s += lap.time_s();
         if (block.hits.empty())
             continue;
+        if (frame.sky != nullptr) {
+            shade_sky_block(frame, pass, stratum, block);
+            report.sky_s += lap.time_s();
+        }
         for (std::size_t lamp = 0; lamp < frame.lamps.lamps.size(); ++lamp) {
             if (!frame.plan.lamps[lamp].is_lit)
                 continue;

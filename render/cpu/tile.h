@@ -7,6 +7,7 @@
 #include "render/film.h"
 #include "render/lamps.h"
 #include "render/report.h"
+#include "render/sky.h"
 
 #include <glm/glm.hpp>
 
@@ -38,7 +39,8 @@ struct Frame {
     Picture& picture;
     std::vector<shared::Brdf> brdfs;  // [material], of what the plan has of it
     int strata = 1;                   // a pixel's side
-    std::optional<std::size_t> bias_layer, measured_layer;
+    std::optional<std::size_t> bias_layer, measured_layer, environment_layer;
+    const Sky* sky = nullptr;  // null: darkness all around
 
     glm::ivec2 tiles() const { return (picture.size_px + kTilePx - 1) / kTilePx; }
 };
@@ -47,6 +49,7 @@ struct TileReport {
     double camera_s = 0, sums_s = 0;
     double shading_s = 0;  // all that follows, of which:
     double shadow_rays_s = 0, gloss_s = 0;
+    double sky_s = 0;  // light of the environment, its rays included
     std::uint64_t camera_rays = 0, shadow_rays = 0, multiply_adds = 0;
 };
 

@@ -213,4 +213,13 @@ bool Tracer::is_occluded(glm::dvec3 from_world_m, glm::dvec3 to_world_m, std::ui
     return ray.tfar < 0.0F;
 }
 
+bool Tracer::is_open(glm::dvec3 from_world_m, glm::dvec3 direction_world) const {
+    RTCRay ray = make_ray(glm::vec3(from_world_m), glm::vec3(direction_world),
+                          std::numeric_limits<float>::infinity(), ~0U);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_->top, &context, &ray);
+    return ray.tfar >= 0.0F;
+}
+
 }  // namespace nearfield::render

@@ -37,6 +37,9 @@ class Tracer {
     /// Whether anything that `mask` meets lies between two points. The end itself does not count.
     bool is_occluded(glm::dvec3 from_world_m, glm::dvec3 to_world_m, std::uint32_t mask) const;
 
+    /// Whether nothing stands between a point and what is infinitely far. direction: unit length.
+    bool is_open(glm::dvec3 from_world_m, glm::dvec3 direction_world) const;
+
     /// What Embree holds.
     double bytes() const;
 

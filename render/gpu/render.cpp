@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gpu/render.h"
 
+#include "formats/files/error.h"
 #include "formats/files/provenance.h"
 #include "render/film.h"
 #include "render/gpu/headless.h"
@@ -92,8 +93,11 @@ Rendered render_gl(const Scene& scene, const RenderOptions& options, const Rende
     const Opening opening = open_scene(scene, options, Device::Gl, report);
     const Lamps& lamps = opening.lamps;
     const Plan& plan = report.plan;
+    if (plan.has_environment)
+        throw Error{"cannot render by OpenGL", "environment",
+                    "none, or --effect environment=off: the CPU renders it", "one"};
     const bool has_bias = !options.sampler && options.q > 0;
-    result.picture = make_picture(lamps, opening.size_px, false);
+    result.picture = make_picture(lamps, opening.size_px, {});
     if (has_bias)
         add_bias_layer(result.picture);
 

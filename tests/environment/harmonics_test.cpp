@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/environment/irradiance.h"
+#include "formats/environment/harmonics.h"
+
 #include "formats/shared/spherical_harmonics.glsl.h"
 #include "tests/environment/skies.h"
 #include "tests/support/random.h"
@@ -17,7 +18,7 @@ double harmonic(int k, glm::dvec3 d) {
 }
 
 // Proves that the functions are orthonormal: 16 different ones, each of its constant.
-TEST(Harmonics, AreOrthonormal) {
+TEST(SphericalHarmonics, AreOrthonormal) {
     for (int a = 0; a < shared::kHarmonics; ++a)
         for (int b = a; b < shared::kHarmonics; ++b)
             EXPECT_NEAR(test::over_sphere(
@@ -28,7 +29,7 @@ TEST(Harmonics, AreOrthonormal) {
 
 // Proves the cosine's factors by definition: what a clamped cosine about an axis makes of each
 // function is the factor times the function's value at the axis.
-TEST(Harmonics, CosineFactorsAreIntegrals) {
+TEST(SphericalHarmonics, CosineFactorsAreIntegrals) {
     const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, -0.5, 0.7));
     for (int k = 0; k < shared::kHarmonics; ++k)
         EXPECT_NEAR(test::over_sphere(400,
@@ -44,7 +45,7 @@ TEST(Irradiance, IsExactForSmoothLight) {
     const LatLong picture = test::sky(64, [](glm::dvec3 d) {
         return glm::vec3(2.0 + d.x, 1.5 + d.y * d.z, 1.0 + 0.5 * d.z * d.z);
     });
-    const IrradianceHarmonics harmonics = project_irradiance(picture);
+    const Harmonics harmonics = project(picture);
     support::Random random{1};
     for (int k = 0; k < 50; ++k) {
         const glm::dvec3 n = glm::normalize(
@@ -54,9 +55,7 @@ TEST(Irradiance, IsExactForSmoothLight) {
             EXPECT_NEAR(irradiance(harmonics, n)[c] / direct[c], 1.0, 2e-3);  // of 64 rows
     }
     EXPECT_NEAR(
-        irradiance(project_irradiance(test::sky(64, [](glm::dvec3) { return glm::vec3(1.0F); })),
-                   {0, 1, 0})
-            .x,
+        irradiance(project(test::sky(64, [](glm::dvec3) { return glm::vec3(1.0F); })), {0, 1, 0}).x,
         std::acos(-1.0), 1e-3);
 }
 
@@ -65,7 +64,7 @@ TEST(Irradiance, IsExactForSmoothLight) {
 // 5)/32 of a clamped cosine c), and never negative.
 TEST(Irradiance, OfASunIsOffByThreeThirtySecondsAtMost) {
     const LatLong picture = test::lone_sun(64, {40, 20}, 1e4F);
-    const IrradianceHarmonics harmonics = project_irradiance(picture);
+    const Harmonics harmonics = project(picture);
     const glm::dvec3 sun(pixel_direction(picture, {40, 20}));
     const double most = direct_irradiance(picture, sun).x;
     double worst = 0.0;

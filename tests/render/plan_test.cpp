@@ -288,7 +288,8 @@ TEST(Plan, DevicesShareTheTable) {
         return text;
     };
     EXPECT_EQ(names(Device::Cpu, true), "camera rays;light sums;samples;shadow rays;");
-    EXPECT_EQ(names(Device::Cpu, false), "gloss;tone mapping;");
+    EXPECT_EQ(names(Device::Cpu, false),
+              "gloss;environment;sky irradiance;sky samples;sky rays;tone mapping;");
     EXPECT_EQ(names(Device::Gl, true), "g-buffer;shadow maps;light sums;accumulate;");
     EXPECT_EQ(names(Device::Gl, false), "box energies;samples;gloss;tone mapping;");
 }

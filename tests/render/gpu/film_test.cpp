@@ -32,7 +32,7 @@ class FilmTest : public GlTest {
     static Picture empty_picture(std::size_t lamps) {
         Lamps of_scene;
         of_scene.lamps.resize(lamps);
-        return make_picture(of_scene, kSizePx, false);
+        return make_picture(of_scene, kSizePx, {});
     }
 };
 

@@ -98,7 +98,7 @@ LitFrame light_by_gl(Device& device, const Scene& scene, const RenderOptions& op
     query.sets = sets_of(options, options.samples);
     query.seed = options.seed;
     add_pass(frame, glm::dvec2(0.5), query, 1.0F);
-    LitFrame lit{make_picture(opening.lamps, opening.size_px, false), {}};
+    LitFrame lit{make_picture(opening.lamps, opening.size_px, {}), {}};
     read_film(frame.film, 1.0F, lit.picture);
     lit.hits = read_hits(frame.surfaces.surfaces);
     return lit;
@@ -129,7 +129,7 @@ Picture light_by_cpu(const Scene& scene,
     const Tracer tracer(Scene{}, {}, 1);
     const shared::Brdf brdf = planned_brdf(scene.materials[0], report.plan);
     const glm::dvec3 eye_m(opening.camera.world_from_camera[3]);
-    Picture picture = make_picture(opening.lamps, opening.size_px, false);
+    Picture picture = make_picture(opening.lamps, opening.size_px, {});
     Scratch scratch;
     for (std::size_t k = 0; k < hits.size(); ++k)
         for (std::size_t lamp = 0; hits[k] && lamp < opening.lamps.lamps.size(); ++lamp) {

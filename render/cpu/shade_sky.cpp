@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/cpu/shade_sky.h"
+
+#include "formats/shared/brdf_weight.glsl.h"
+#include "formats/shared/filtered_samples.glsl.h"
+#include "render/cpu/sky_filter.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace nearfield::render {
+namespace {
+
+// Shifts of the sky's samples are independent of lamps' and lobes'.
+constexpr std::uint32_t kFilteredSeed = 0x51ed270bU;
+
+/// Cosine times what of the sky is hidden, where any of the directions that were asked for is.
+std::optional<environment::HarmonicValues> hidden_sky(const SkyQuery& query, Scratch& scratch) {
+    if (!query.shade.has_shadows)
+        return std::nullopt;
+    const environment::VisibilityFit& asked = *query.sky.environment.directions;
+    const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
+    std::vector<float> hidden(asked.directions.size(), 0.0F);
+    bool is_any = false;
+    for (std::size_t n = 0; n < hidden.size(); ++n) {
+        const glm::vec3 world = world_from_sky * asked.directions[n];
+        const float cosine = glm::dot(query.shade.frame.z, world);
+        if (cosine > 0.0F && !is_open(query, world, scratch)) {
+            hidden[n] = cosine;
+            is_any = true;
+        }
+    }
+    if (!is_any)
+        return std::nullopt;
+    return environment::harmonics_of(asked, hidden);
+}
+
+/// Share of a direction's light that arrives. The harmonics hold a cosine, which lobes have
+/// already; where it is small they say little, and what they say is not made larger than 5 times.
+float visible_share(const environment::HarmonicValues& hidden, glm::vec3 direction, float cosine) {
+    constexpr float kLeastCosine = 0.2F;
+    return 1.0F -
+           std::clamp(environment::value_of(hidden, direction) / std::max(cosine, kLeastCosine),
+                      0.0F, 1.0F);
+}
+
+/// What a lobe reflects of the sky: the mean over its samples.
+glm::vec3 filtered_gloss(const SkyQuery& query,
+                         const std::optional<environment::HarmonicValues>& hidden) {
+    const ShadeQuery& shade = query.shade;
+    const SkyLobe lobe{*query.sky.environment.maps, shade.brdf, shade.frame,
+                       query.sky.environment_from_world, to_viewer_local(shade)};
+    const glm::vec2 shift = query.options.is_shifted
+                                ? shift_of_set(shade, 0, shade.seed ^ kFilteredSeed)
+                                : glm::vec2(0.0F);
+    const auto count = static_cast<shared::uint>(query.options.samples);
+    glm::vec3 sum(0.0F);
+    for (shared::uint i = 0; i < count; ++i) {
+        const glm::vec2 xi = glm::fract(shared::hammersley_point(i, count) + shift);
+        const glm::vec3 to_light = shared::brdf_lobe_sample(shade.brdf, lobe.to_viewer, xi);
+        const float density = shared::brdf_lobe_density(shade.brdf, to_light, lobe.to_viewer);
+        if (!(density > 0.0F))
+            continue;
+        const glm::vec3 light = filtered_light(lobe, query.options, xi, to_light, density) *
+                                shared::brdf_lobe_weight(shade.brdf, to_light, lobe.to_viewer);
+        sum += hidden ? light * visible_share(*hidden, lobe.in_environment(to_light), to_light.z)
+                      : light;
+    }
+    return sum * (query.sky.intensity / static_cast<float>(count));
+}
+
+/// Irradiance by harmonics, less what is hidden.
+glm::vec3 filtered_irradiance(const SkyQuery& query,
+                              const std::optional<environment::HarmonicValues>& hidden) {
+    const environment::Harmonics& sky = *query.sky.environment.harmonics;
+    glm::vec3 sum = environment::irradiance(sky, query.sky.local(query.shade.frame.z));
+    if (hidden)
+        for (std::size_t k = 0; k < hidden->size(); ++k)
+            sum -= sky.radiance.at(k) * hidden->at(k);
+    return query.sky.intensity * glm::max(sum, 0.0F);
+}
+
+}  // namespace
+
+bool is_open(const SkyQuery& query, glm::vec3 direction_world, Scratch& scratch) {
+    if (!query.shade.has_shadows)
+        return true;
+    const Hit& hit = query.shade.hit;
+    const glm::dvec3 direction(direction_world);
+    if (!(glm::dot(direction, hit.geometric_normal) > 0.0))
+        return false;
+    ++scratch.shadow_rays;
+    return query.tracer.is_open(hit.position_world_m + hit.geometric_normal * hit.offset_m,
+                                direction);
+}
+
+LampLight shade_sky_filtered(const SkyQuery& query, Scratch& scratch) {
+    const auto hidden = hidden_sky(query, scratch);
+    LampLight light;
+    if (query.sky.environment.harmonics) {
+        light.irradiance = filtered_irradiance(query, hidden);
+        light.radiance = light.irradiance * diffuse_of(query.shade);
+    }
+    if (query.sky.environment.maps && shared::brdf_is_glossy(query.shade.brdf))
+        light.radiance += filtered_gloss(query, hidden);
+    return light;
+}
+
+LampLight shade_sky_lights(const SkyQuery& query, Scratch& scratch) {
+    const environment::VisibilityFit& lamps = *query.sky.environment.directions;
+    const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
+    const glm::vec3 to_viewer = to_viewer_local(query.shade);
+    LampLight light;
+    for (std::size_t n = 0; n < lamps.directions.size(); ++n) {
+        const glm::vec3 world = world_from_sky * lamps.directions[n];
+        const glm::vec3 to_light = shared::local_from_world(query.shade.frame, world);
+        if (!shared::brdf_is_above(to_light) || !is_open(query, world, scratch))
+            continue;
+        const glm::vec3 arriving = lamps.light[n] * (to_light.z * query.sky.intensity);
+        light.irradiance += arriving;
+        light.radiance += arriving * shared::brdf_eval(query.shade.brdf, to_light, to_viewer);
+    }
+    return light;
+}
+
+}  // namespace nearfield::render
