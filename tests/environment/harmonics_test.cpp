@@ -63,9 +63,9 @@ TEST(Irradiance, IsExactForSmoothLight) {
 // surface faces it, off by 3/32 at most (at the horizon; from the series 1/4 + c/2 + (15 c^2 -
 // 5)/32 of a clamped cosine c), and never negative.
 TEST(Irradiance, OfASunIsOffByThreeThirtySecondsAtMost) {
-    const LatLong picture = test::lone_sun(64, {40, 20}, 1e4F);
+    const LatLong picture = test::lone_sun(128, {80, 40}, 1e4F);
     const Harmonics harmonics = project(picture);
-    const glm::dvec3 sun(pixel_direction(picture, {40, 20}));
+    const glm::dvec3 sun(pixel_direction(picture, {80, 40}));
     const double most = direct_irradiance(picture, sun).x;
     double worst = 0.0;
     support::Random random{2};
