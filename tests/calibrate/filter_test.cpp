@@ -65,7 +65,6 @@ calibrate::FilterGeometry geometry_of(const LabFrames& lab) {
                      camera.cx_px,
                      camera.cy_px,
                      {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}};
-    using sample_data::operator*;
     const Rigid u_frame = inverse(camera.bench_from_camera) * truth.places.bench_from_filter;
     geometry.camera_from_u = u_frame;
     geometry.pitch_m = truth.bench.filter.pitch_m;
