@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -56,9 +58,32 @@ void change_channels(Luminaire& luminaire, int channels) {
     }
 }
 
-std::shared_ptr<const LoadedLightField> load(const std::string& path, const LampParts& parts) {
+/// Multiplies the channels, of which there are three afterwards; the files' tables are of other
+/// light then.
+void tint(Luminaire& luminaire, glm::vec3 factors) {
+    if (factors == glm::vec3(1.0F))
+        return;
+    luminaire.tables.clear();
+    for (Slab& slab : luminaire.lightfield.slabs) {
+        if (slab.channels == 1 && !slab.sigma.empty()) {
+            const std::vector<float> of_y = slab.sigma;
+            slab.sigma.insert(slab.sigma.end(), of_y.begin(), of_y.end());
+            slab.sigma.insert(slab.sigma.end(), of_y.begin(), of_y.end());
+        }
+        change_channels(slab, 3);
+        const std::size_t of_channel = slab.coeffs.size() / 3;
+        for (std::size_t i = 0; i < slab.coeffs.size(); ++i)
+            slab.coeffs[i] *= factors[static_cast<int>(i / of_channel)];
+        for (std::size_t i = 0; i < slab.sigma.size(); ++i)
+            slab.sigma[i] *= factors[static_cast<int>(i / of_channel)];
+    }
+}
+
+std::shared_ptr<const LoadedLightField> load(const LampFileKey& key, const LampParts& parts) {
+    const std::string& path = key.path;
     Luminaire luminaire =
         parts.tables ? read_with_tables(path) : Luminaire{read_lightfield(path), {}};
+    tint(luminaire, key.tint);
     auto loaded = std::make_shared<LoadedLightField>();
     if (parts.measured && has_sigma(luminaire.lightfield))
         loaded->measured = luminaire.lightfield;
@@ -187,6 +212,35 @@ std::set<const LoadedLightField*> files_of(const Lamps& lamps) {
     return files;
 }
 
+LampFileKey key_of(const LuminaireInstance& luminaire) {
+    LampFileKey key{luminaire.path, luminaire.tint};
+    std::error_code failed;  // reading will say why
+    const auto written = std::filesystem::last_write_time(luminaire.path, failed);
+    key.modified_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(written.time_since_epoch()).count();
+    key.size_bytes = std::filesystem::file_size(luminaire.path, failed);
+    return key;
+}
+
+LampParts both(const LampParts& a, const LampParts& b) {
+    return {a.tables || b.tables, a.mips || b.mips, a.measured || b.measured, b.channels};
+}
+
+void drop_unnamed(const Scene& scene, LampFiles& kept) {
+    std::erase_if(kept.files, [&](const auto& file) {
+        return std::none_of(
+            scene.luminaires.begin(), scene.luminaires.end(),
+            [&](const LuminaireInstance& luminaire) { return key_of(luminaire) == file.first; });
+    });
+}
+
+std::shared_ptr<const LoadedLightField> find_or_load(const LampFileKey& key, LampFiles& kept) {
+    for (const auto& [known, file] : kept.files)
+        if (known == key)
+            return file;
+    return kept.files.emplace_back(key, load(key, kept.parts)).second;
+}
+
 }  // namespace
 
 double coefficient_bytes(const Lamps& lamps) {
@@ -212,16 +266,23 @@ double table_bytes(const Lamps& lamps) {
 }
 
 Lamps load_lamps(const Scene& scene, const LampParts& parts) {
+    LampFiles files;
+    return load_lamps(scene, parts, files);
+}
+
+Lamps load_lamps(const Scene& scene, const LampParts& parts, LampFiles& kept) {
+    const LampParts all_parts = both(kept.parts, parts);
+    if (!(all_parts == kept.parts))
+        kept.files.clear();
+    kept.parts = all_parts;
+    drop_unnamed(scene, kept);
     Lamps result;
     MaskBits bits(scene);
-    std::map<std::string, std::shared_ptr<const LoadedLightField>> files;
     std::set<std::string> names;
     for (const LuminaireInstance& luminaire : scene.luminaires) {
         if (!luminaire.on || luminaire.dim == 0.0)
             continue;
-        std::shared_ptr<const LoadedLightField>& file = files[luminaire.path];
-        if (!file)
-            file = load(luminaire.path, parts);
+        const std::shared_ptr<const LoadedLightField> file = find_or_load(key_of(luminaire), kept);
         if (!result.lamps.empty() && file->quantity != result.quantity)
             throw Error{"cannot mix light in lumens and in watts", luminaire.path,
                         "the other luminaires' quantity", "another"};

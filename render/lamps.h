@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nearfield::render {
@@ -25,6 +26,8 @@ struct LampParts {
     /// 1: luminance alone; 3: three channels, equal ones where the file has one; 0: as the file
     /// has.
     int channels = 0;
+
+    bool operator==(const LampParts&) const = default;
 };
 
 /// A light field, read once however many lamps name it. Of the three only what was asked for:
@@ -65,9 +68,28 @@ struct Lamps {
     Quantity quantity = Quantity::Photometric;
 };
 
+/// What a light field was read from, and how.
+struct LampFileKey {
+    std::string path;
+    glm::vec3 tint{1.0F};
+    std::int64_t modified_ns = 0;  // a file that has been written again is read again
+    std::uintmax_t size_bytes = 0;
+
+    bool operator==(const LampFileKey&) const = default;
+};
+
+/// Light fields that stay loaded from one picture to the next.
+struct LampFiles {
+    LampParts parts;  // that each of them has
+    std::vector<std::pair<LampFileKey, std::shared_ptr<const LoadedLightField>>> files;
+};
+
 /// Opens the light fields of the lamps that are on with dim > 0; one that several lamps name is
 /// read once. Throws Error if one cannot be read or if photometric and radiometric ones are mixed.
 Lamps load_lamps(const Scene& scene, const LampParts& parts = {});
+/// The same with what is in `kept` and still holds; keeps what it reads there, with the parts that
+/// were ever asked for, and drops what no lamp of the scene names, on or off.
+Lamps load_lamps(const Scene& scene, const LampParts& parts, LampFiles& kept);
 
 /// Memory of the coefficients, those of mips included, and of tables. A file counts once.
 double coefficient_bytes(const Lamps& lamps);

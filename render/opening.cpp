@@ -37,9 +37,18 @@ Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
                    RenderReport& report) {
+    LampFiles files;
+    return open_scene(scene, options, device, files, report);
+}
+
+Opening open_scene(const Scene& scene,
+                   const RenderOptions& options,
+                   Device device,
+                   LampFiles& kept,
+                   RenderReport& report) {
     const Camera& camera = find_camera(scene, options.camera);
     const double start_s = now_s();
-    Opening opening{camera, load_lamps(scene, parts_of(scene, options, device)),
+    Opening opening{camera, load_lamps(scene, parts_of(scene, options, device), kept),
                     complete_size(options.size_px, camera), std::nullopt};
     report.has_sigma_measured =
         std::any_of(opening.lamps.lamps.begin(), opening.lamps.lamps.end(),

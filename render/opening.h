@@ -39,6 +39,12 @@ Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
                    RenderReport& report);
+/// The same with lamps that stay loaded.
+Opening open_scene(const Scene& scene,
+                   const RenderOptions& options,
+                   Device device,
+                   LampFiles& kept,
+                   RenderReport& report);
 
 /// Fills what is known at the end: is_error_reached, time_s.
 void end_call(const Call& call, const RenderOptions& options, RenderReport& report);

@@ -93,9 +93,14 @@ struct RenderProgress {
     double error_rel = 0;  // after them; 0 before the first
 };
 
+/// Thrown by a renderer that RenderHooks::is_stopped told to give its picture up.
+struct Stopped {};
+
 struct RenderHooks {
     std::function<void(const RenderProgress&)> progress;  // from any thread, one at a time
     std::function<double()> clock_s;  // seconds, rising, from any thread; empty: the steady clock
+    /// Asked now and then by the OpenGL renderer; true ends the call by Stopped. Empty: never.
+    std::function<bool()> is_stopped;
 };
 
 }  // namespace nearfield::render

@@ -53,11 +53,25 @@ void check_matrix(const glm::dmat4& matrix, const std::string& where) {
                     fmt::format("determinant {:g}", determinant)};
 }
 
+glm::vec3 read_tint(const tinygltf::Value& value, const std::string& where) {
+    glm::vec3 tint(0.0F);
+    bool fits = value.IsArray() && value.ArrayLen() == 3;
+    for (int c = 0; fits && c < 3; ++c) {
+        fits = value.Get(c).IsNumber();
+        tint[c] = fits ? static_cast<float>(value.Get(c).GetNumberAsDouble()) : 0.0F;
+        fits = fits && tint[c] >= 0.0F && tint[c] <= 1.0F;
+    }
+    if (!fits)
+        throw Error{kReadingScene, where, "3 numbers from 0 to 1", "something else"};
+    return tint;
+}
+
 void read_luminaire(Reading& reading,
                     const tinygltf::Node& node,
                     const tinygltf::Value& extension,
                     const glm::dmat4& world_from_node,
-                    const std::string& place) {
+                    int index) {
+    const std::string place = fmt::format("nodes[{}]", index);
     const auto where = [&](const std::string& member) {
         return reading.at(fmt::format("{}.extensions.{}{}", place, kLuminaireExtension, member));
     };
@@ -67,14 +81,15 @@ void read_luminaire(Reading& reading,
     };
     if (!extension.IsObject())
         throw Error{kReadingScene, where(""), "an object", "something else"};
-    static const std::set<std::string> known = {"uri", "on", "dim", "excludes", "extras"};
+    static const std::set<std::string> known = {"uri", "on", "dim", "tint", "excludes", "extras"};
     for (const std::string& key : extension.Keys())
         if (known.count(key) == 0)
-            throw Error{kReadingScene, where(""), "uri, on, dim, excludes",
+            throw Error{kReadingScene, where(""), "uri, on, dim, tint, excludes",
                         "'" + key.substr(0, 40) + "'"};
 
     LuminaireInstance lamp;
     lamp.name = node.name;
+    lamp.node = index;
     lamp.world_from_luminaire = world_from_node;
     uniform_scale(world_from_node, reading.at(place));
     if (!extension.Get("uri").IsString())
@@ -94,6 +109,8 @@ void read_luminaire(Reading& reading,
             throw Error{kReadingScene, where(".dim"), "a number from 0 to 1e9",
                         fmt::format("{}", lamp.dim)};
     }
+    if (extension.Has("tint"))
+        lamp.tint = read_tint(extension.Get("tint"), where(".tint"));
     const tinygltf::Value& excludes = extension.Get("excludes");
     if (extension.Has("excludes") && !excludes.IsArray())
         refuse("excludes", "an array of names");
@@ -151,7 +168,7 @@ void read_node(Reading& reading, int index, const glm::dmat4& world_from_node) {
         read_camera(reading, node, world_from_node, place);
     if (const auto found = node.extensions.find(kLuminaireExtension);
         found != node.extensions.end())
-        read_luminaire(reading, node, found->second, world_from_node, place);
+        read_luminaire(reading, node, found->second, world_from_node, index);
 }
 
 }  // namespace

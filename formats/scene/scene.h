@@ -67,7 +67,9 @@ struct LuminaireInstance {
         1.0};  // its scale is geometric and keeps radiance: flux goes with its square
     bool on = true;
     double dim = 1.0;                   // factor of its radiance, >= 0
+    glm::vec3 tint{1.0F};               // factors of its red, green and blue, 0 ... 1
     std::vector<std::string> excludes;  // nodes or meshes by name that cast no shadow in its light
+    int node = -1;                      // of the file that it was read from; -1: of none
 };
 
 /// Light from far away all around (formats/environment).

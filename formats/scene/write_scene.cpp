@@ -124,6 +124,8 @@ tinygltf::Value to_gltf(const LuminaireInstance& lamp) {
     extension["uri"] = tinygltf::Value(lamp.uri);
     extension["on"] = tinygltf::Value(lamp.on);
     extension["dim"] = tinygltf::Value(lamp.dim);
+    if (lamp.tint != glm::vec3(1.0F))
+        extension["tint"] = to_gltf(lamp.tint);
     tinygltf::Value::Array excludes;
     for (const std::string& name : lamp.excludes)
         excludes.emplace_back(name);

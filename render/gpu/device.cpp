@@ -4,6 +4,7 @@
 #include "formats/files/error.h"
 #include "render/gpu/objects.h"
 #include "render/limits.h"
+#include "render/report.h"
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -67,6 +68,36 @@ class Named {
   private:
     std::string& kept_;
     std::string before_;
+};
+
+/// The card's clock; ended also where the pass throws, since no other can run beside it.
+class TimerQuery {
+  public:
+    TimerQuery() : query_(make()) { glBeginQuery(GL_TIME_ELAPSED, query_.id()); }
+    ~TimerQuery() {
+        if (is_running_)
+            glEndQuery(GL_TIME_ELAPSED);
+    }
+    TimerQuery(const TimerQuery&) = delete;
+    TimerQuery& operator=(const TimerQuery&) = delete;
+
+    double end_s() {
+        glEndQuery(GL_TIME_ELAPSED);
+        is_running_ = false;
+        GLuint64 nanoseconds = 0;
+        glGetQueryObjectui64v(query_.id(), GL_QUERY_RESULT, &nanoseconds);
+        return 1e-9 * static_cast<double>(nanoseconds);
+    }
+
+  private:
+    static GLuint make() {
+        GLuint id = 0;
+        glCreateQueries(GL_TIME_ELAPSED, 1, &id);
+        return id;
+    }
+
+    Query query_;
+    bool is_running_ = true;
 };
 
 std::string mebibytes(double bytes) {
@@ -140,20 +171,20 @@ std::string Device::said(unsigned error) {
     return text;
 }
 
+void Device::continue_or_stop() const {
+    if (is_stopped_ && is_stopped_())
+        throw Stopped{};
+}
+
 void Device::run_pass(const std::string& name, const std::function<void()>& pass) {
+    continue_or_stop();
     const std::uint64_t bytes_before = allocated_bytes_;
     const Named named(pass_, name);
     double time_s = 0.0;
     if (!is_on_cpu_) {
-        GLuint id = 0;
-        glCreateQueries(GL_TIME_ELAPSED, 1, &id);
-        const Query query(id);
-        glBeginQuery(GL_TIME_ELAPSED, id);
+        TimerQuery timer;
         pass();
-        glEndQuery(GL_TIME_ELAPSED);
-        GLuint64 nanoseconds = 0;
-        glGetQueryObjectui64v(id, GL_QUERY_RESULT, &nanoseconds);
-        time_s = 1e-9 * static_cast<double>(nanoseconds);
+        time_s = timer.end_s();
     } else {
         const double start_s = clock_s();
         pass();

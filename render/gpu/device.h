@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nearfield::render::gpu {
@@ -26,6 +27,8 @@ class Device {
 
     /// "llvmpipe (LLVM 15.0.6, 256 bits)".
     const std::string& renderer() const { return renderer_; }
+    /// Whether it is a rasterizer on the CPU: its memory is the machine's, and its timers lie.
+    bool is_on_cpu() const { return is_on_cpu_; }
     int max_texture_px() const { return max_texture_px_; }
     int max_layers() const { return max_layers_; }
     /// Of a buffer that a shader reads.
@@ -41,6 +44,12 @@ class Device {
     /// Of all textures and buffers that were made by storage.h so far.
     std::uint64_t allocated_bytes() const { return allocated_bytes_; }
     void count_allocation(std::uint64_t bytes) { allocated_bytes_ += bytes; }
+
+    /// From now on continue_or_stop() and run_pass() ask it, in this thread; empty: nothing is asked.
+    void set_stop(std::function<bool()> is_stopped) { is_stopped_ = std::move(is_stopped); }
+    bool can_be_stopped() const { return static_cast<bool>(is_stopped_); }
+    /// Throws Stopped (render/report.h) where what was set says so.
+    void continue_or_stop() const;
 
     /// Throws Error if the driver reported one since the last call.
     void check(const std::string& pass);
@@ -60,6 +69,7 @@ class Device {
     int max_texture_px_ = 0, max_layers_ = 0;
     std::uint64_t max_buffer_bytes_ = 0;
     bool is_on_cpu_ = false;
+    std::function<bool()> is_stopped_;
     std::string pass_;  // that runs; empty: none
     std::vector<PassCost> costs_;
     std::uint64_t allocated_bytes_ = 0;

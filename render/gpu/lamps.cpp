@@ -11,6 +11,10 @@ bool has_sums(const RenderOptions& options) {
     return !options.sampler.has_value();
 }
 
+bool has_cdfs(const RenderOptions& options) {
+    return options.sampler == model::Sampler::Pdis || options.sampler == model::Sampler::Precomputed;
+}
+
 bool has_samples(const Plan& plan, const RenderOptions& options) {
     return options.sampler.has_value() || plan.has_gloss;
 }
@@ -23,9 +27,10 @@ SlabPlacement placement_of(const PlacedSlab& slab) {
     return {slab.slab_from_world, slab.world_from_slab, slab.slab_from_world_rotation};
 }
 
-SumSlab upload_sums(Device& device, const PlacedSlab& slab, const Plan& plan, int q) {
+SumSlab upload_sums(Device& device, const PlacedSlab& slab, const Plan& plan) {
     const bool has_color = plan.color.is_in;
-    return q > 0 ? upload_sum_slab(device, *slab.mips, has_color, placement_of(slab))
+    return slab.mips != nullptr
+               ? upload_sum_slab(device, *slab.mips, has_color, placement_of(slab))
                  : upload_sum_slab(device, *slab.prepared, has_color, placement_of(slab));
 }
 
@@ -36,31 +41,29 @@ SlabTextures upload_tables(Device& device,
                            const RenderOptions& options) {
     SlabNeeds needs;
     needs.tables = true;
-    needs.cdfs = sampler_of(options) == model::Sampler::Pdis ||
-                 sampler_of(options) == model::Sampler::Precomputed;
+    needs.cdfs = has_cdfs(options);
     needs.has_color = plan.color.is_in;
     return upload_slab(device, slab.prepared->slab, slab.prepared->lit, &tables, needs,
                        placement_of(slab));
 }
 
-FileOnCard upload_file(Device& device,
-                       const Lamp& lamp,
-                       const Plan& plan,
-                       const RenderOptions& options,
-                       LampsOnCard& on_card) {
-    FileOnCard file;
-    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
-        const std::uint64_t before = device.allocated_bytes();
-        if (has_sums(options))
-            file.sums.push_back(upload_sums(device, lamp.slabs[s], plan, options.q));
-        const std::uint64_t between = device.allocated_bytes();
-        if (has_samples(plan, options))
-            file.sampled.push_back(
-                upload_tables(device, lamp.slabs[s], lamp.file->sampling[s].tables, plan, options));
-        on_card.sum_bytes += between - before;
-        on_card.table_bytes += device.allocated_bytes() - between;
-    }
-    return file;
+void upload_file(Device& device,
+                 const Lamp& lamp,
+                 const Plan& plan,
+                 const RenderOptions& options,
+                 LampsOnCard& on_card) {
+    FileOnCard& file = on_card.files[lamp.file.get()];
+    file.file = lamp.file;
+    const std::uint64_t before = device.allocated_bytes();
+    for (std::size_t s = file.sums.size(); has_sums(options) && s < lamp.slabs.size(); ++s)
+        file.sums.push_back(upload_sums(device, lamp.slabs[s], plan));
+    const std::uint64_t between = device.allocated_bytes();
+    for (std::size_t s = file.sampled.size(); has_samples(plan, options) && s < lamp.slabs.size();
+         ++s)
+        file.sampled.push_back(
+            upload_tables(device, lamp.slabs[s], lamp.file->sampling[s].tables, plan, options));
+    file.sum_bytes += between - before;
+    file.table_bytes += device.allocated_bytes() - between;
 }
 
 LightSamples make_samples(Device& device,
@@ -84,19 +87,30 @@ LightSamples make_samples(Device& device,
 
 }  // namespace
 
-LampsOnCard upload_lamps(Device& device,
-                         const Lamps& lamps,
-                         const Plan& plan,
-                         const RenderOptions& options) {
-    LampsOnCard on_card;
-    for (std::size_t k = 0; k < lamps.lamps.size(); ++k) {
-        const Lamp& lamp = lamps.lamps[k];
-        if (plan.lamps[k].is_lit && !on_card.files.contains(lamp.file.get()))
-            on_card.files.emplace(lamp.file.get(),
-                                  upload_file(device, lamp, plan, options, on_card));
+void upload_lamps(Device& device,
+                  const Lamps& lamps,
+                  const Plan& plan,
+                  const RenderOptions& options,
+                  LampsOnCard& on_card) {
+    const bool is_of_other_kind = on_card.has_color != plan.color.is_in ||
+                                  (on_card.has_cdfs != has_cdfs(options) && options.sampler);
+    std::erase_if(on_card.files, [&](const auto& file) {
+        return is_of_other_kind || std::none_of(lamps.lamps.begin(), lamps.lamps.end(),
+                                                [&](const Lamp& lamp) {
+                                                    return lamp.file.get() == file.first;
+                                                });
+    });
+    on_card.has_color = plan.color.is_in;
+    on_card.has_cdfs = has_cdfs(options);
+    for (std::size_t k = 0; k < lamps.lamps.size(); ++k)
+        if (plan.lamps[k].is_lit)
+            upload_file(device, lamps.lamps[k], plan, options, on_card);
+    on_card.sum_bytes = on_card.table_bytes = 0;
+    for (const auto& [key, file] : on_card.files) {
+        on_card.sum_bytes += file.sum_bytes;
+        on_card.table_bytes += file.table_bytes;
     }
     on_card.shadows.resize(lamps.lamps.size());
-    return on_card;
 }
 
 LightPasses make_light_passes(Device& device,
@@ -123,6 +137,8 @@ LightPasses make_light_passes(Device& device,
 
 void add_sums(
     Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass, int q) {
+    if (!has_sums(pass.options))
+        return;
     const Lamp& lamp = pass.lamps.lamps[pass.lamp];
     const bool has_shadows = pass.plan.lamps[pass.lamp].has_shadows;
     const std::vector<SumSlab>& sums = on_card.files.at(lamp.file.get()).sums;
@@ -139,6 +155,8 @@ void add_sums(
 }
 
 void add_samples(Device& device, LightPasses& passes, LampsOnCard& on_card, const LampPass& pass) {
+    if (!has_samples(pass.plan, pass.options))
+        return;
     const Lamp& lamp = pass.lamps.lamps[pass.lamp];
     const bool has_shadows = pass.plan.lamps[pass.lamp].has_shadows;
     const ShadowMaps& maps = on_card.shadows[pass.lamp];
@@ -151,8 +169,6 @@ void add_samples(Device& device, LightPasses& passes, LampsOnCard& on_card, cons
             slab.bind_shadows = [&maps, s] { bind_shadows(maps, s); };
         slabs.push_back(std::move(slab));
     }
-    if (slabs.empty())
-        return;
     SampleQuery query = pass.query;
     query.dim = lamp.dim;
     add_light_samples(device, has_shadows ? passes.samples : passes.unshadowed_samples, slabs,

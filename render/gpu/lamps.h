@@ -11,27 +11,32 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <vector>
 
 namespace nearfield::render::gpu {
 
 /// A light field's slabs, as the passes read them; what no pass reads is not there.
 struct FileOnCard {
+    std::shared_ptr<const LoadedLightField> file;  // whose address another must not get
     std::vector<SumSlab> sums;
     std::vector<SlabTextures> sampled;
+    std::uint64_t sum_bytes = 0, table_bytes = 0;
 };
 
 struct LampsOnCard {
     std::map<const LoadedLightField*, FileOnCard> files;
     std::vector<ShadowMaps> shadows;  // [lamp]
     std::uint64_t sum_bytes = 0, table_bytes = 0;
+    bool has_color = false, has_cdfs = false;  // what files hold
 };
 
-/// Uploads what the plan's passes read.
-LampsOnCard upload_lamps(Device& device,
-                         const Lamps& lamps,
-                         const Plan& plan,
-                         const RenderOptions& options);
+/// Uploads what the plan's passes read and is not there; what is there of other files is dropped.
+void upload_lamps(Device& device,
+                  const Lamps& lamps,
+                  const Plan& plan,
+                  const RenderOptions& options,
+                  LampsOnCard& on_card);
 
 /// Programs that light surfaces, in the variants that the plan calls for.
 struct LightPasses {

@@ -14,7 +14,7 @@ namespace nearfield::render::gpu {
 namespace {
 
 // Locations in sum.comp.
-constexpr GLint kDim = 0, kMip = 1, kFinestTexels = 2, kIsFirst = 3;
+constexpr GLint kDim = 0, kMip = 1, kFinestTexels = 2, kIsFirst = 3, kFirstRow = 4;
 constexpr GLuint kLeftBinding = 7, kQuadsUnit = 20, kTablesUnit = 21;
 constexpr std::size_t kWays = 2;  // by moments, by pieces
 
@@ -181,12 +181,48 @@ bool read_left(const Buffer& left, std::size_t way) {
     return read_buffer<std::uint32_t>(left, kWays)[way] != 0;
 }
 
+struct Rows {
+    int first = 0, count = 0, width = 0;
+};
+
 // Whether pixels are left that this program is to go on with.
-bool dispatch(const Program& program, std::size_t way, const Buffer& left, glm::ivec2 size_px) {
+bool dispatch(const Program& program, std::size_t way, const Buffer& left, const Rows& rows) {
     const std::uint32_t zero = 0;
+    glProgramUniform1i(program.id(), kFirstRow, rows.first);
     glNamedBufferSubData(left.id(), static_cast<GLintptr>(way * sizeof zero), sizeof zero, &zero);
-    dispatch_2d(program, size_px.x, size_px.y);
+    dispatch_2d(program, rows.width, rows.count);
     return read_left(left, way);
+}
+
+// All pixels of some rows, of one level.
+void sum_rows(Device& device,
+              const LightSumPrograms::Pair& pair,
+              const Buffer& left,
+              const Rows& rows) {
+    const auto dispatch_or_stop = [&](const Program& program, std::size_t way) {
+        device.continue_or_stop();
+        return dispatch(program, way, left, rows);
+    };
+    const std::uint32_t zero = 0;
+    glNamedBufferSubData(left.id(), sizeof zero, sizeof zero, &zero);
+    glProgramUniform1i(pair.by_moments.id(), kIsFirst, 1);
+    bool is_left = dispatch_or_stop(pair.by_moments, 0);
+    glProgramUniform1i(pair.by_moments.id(), kIsFirst, 0);
+    while (is_left)
+        is_left = dispatch_or_stop(pair.by_moments, 0);
+    is_left = read_left(left, 1);
+    while (is_left)
+        is_left = dispatch_or_stop(pair.by_pieces, 1);
+}
+
+// A picture that may be given up is drawn in pieces, small enough for a rasterizer on the CPU to
+// come back soon: pixels do not know of each other.
+int rows_at_once(const Device& device, glm::ivec2 size_px) {
+    constexpr int kPixelsOnCpu = 1 << 14, kPixelsOnCard = 1 << 18;
+    if (!device.can_be_stopped())
+        return size_px.y;
+    const int pixels = device.is_on_cpu() ? kPixelsOnCpu : kPixelsOnCard;
+    return std::min(std::max(pixels / size_px.x / 8 * 8, 8), size_px.y);  // whole groups
 }
 
 }  // namespace
@@ -230,14 +266,10 @@ void add_light_sum(Device& device,
             glProgramUniform3i(program->id(), kMip, level, coarsest, q);
             glProgramUniform2i(program->id(), kFinestTexels, slab.texels.x, slab.texels.y);
         }
-        glProgramUniform1i(pair.by_moments.id(), kIsFirst, 1);
-        bool is_left = dispatch(pair.by_moments, 0, programs.left, size_px);
-        glProgramUniform1i(pair.by_moments.id(), kIsFirst, 0);
-        while (is_left)
-            is_left = dispatch(pair.by_moments, 0, programs.left, size_px);
-        is_left = read_left(programs.left, 1);
-        while (is_left)
-            is_left = dispatch(pair.by_pieces, 1, programs.left, size_px);
+        const int rows = rows_at_once(device, size_px);
+        for (int row = 0; row < size_px.y; row += rows)
+            sum_rows(device, pair, programs.left,
+                     {row, std::min(rows, size_px.y - row), size_px.x});
     }
 }
 

@@ -46,7 +46,7 @@ void report_progress(const Run& run, double share_of_pass, bool has_goal) {
 /// The light of what the camera sees that maps do not cover, asked for once: cameras do not move.
 void find_unmapped(Run& run, const SampleQuery& query) {
     GlFrame& frame = run.frame;
-    if (!has_pass(frame.plan, PassId::ShadowMaps))
+    if (!has_pass(frame.plan, PassId::ShadowMaps) || frame.only_lamp)
         return;
     frame.device.run_pass("shadow maps", [&] {
         for (std::size_t k = 0; k < frame.opening.lamps.lamps.size(); ++k)
@@ -102,12 +102,11 @@ render::PassCost cost_of(const Run& run) {
 
 }  // namespace
 
-void draw_shadow_maps(GlFrame& frame) {
+void draw_shadow_maps(GlFrame& frame, const ShadowPass& pass) {
     if (!has_pass(frame.plan, PassId::ShadowMaps))
         return;
-    const ShadowPass pass = make_shadow_pass();
     for (std::size_t k = 0; k < frame.opening.lamps.lamps.size(); ++k)
-        if (frame.plan.lamps[k].is_lit && frame.plan.lamps[k].has_shadows)
+        if (frame.draws(k) && frame.plan.lamps[k].has_shadows)
             frame.device.run_pass("shadow maps", [&] {
                 update_shadow_maps(frame.device, pass, frame.scene_buffers, frame.opening.lamps, k,
                                    frame.options.shadow_maps, frame.on_card.shadows[k]);
@@ -121,7 +120,7 @@ void add_pass(GlFrame& frame, glm::dvec2 at_px, const SampleQuery& query, float 
     bind_surfaces(frame.surfaces.surfaces, frame.scene_buffers.materials);
     const int q = frame.options.q;
     for (std::size_t k = 0; k < frame.opening.lamps.lamps.size(); ++k) {
-        if (!frame.plan.lamps[k].is_lit)
+        if (!frame.draws(k))
             continue;
         LampPass pass{frame.opening.lamps, k, frame.plan, frame.options, query};
         pass.query.first_set += static_cast<std::uint32_t>(k * kMostSets);

@@ -10,6 +10,7 @@
 #include "render/report.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace nearfield::render::gpu {
 
@@ -20,15 +21,20 @@ struct GlFrame {
     const Opening& opening;
     const Plan& plan;
     Device& device;
-    SceneBuffers scene_buffers;
-    SurfacePass surfaces;
-    LampsOnCard on_card;
-    LightPasses passes;
-    Film film;
+    const SceneBuffers& scene_buffers;
+    SurfacePass& surfaces;
+    LampsOnCard& on_card;
+    LightPasses& passes;
+    Film& film;
+    std::optional<std::size_t> only_lamp = std::nullopt;  // of opening.lamps; none: all of them
+
+    bool draws(std::size_t lamp) const {
+        return plan.lamps[lamp].is_lit && only_lamp.value_or(lamp) == lamp;
+    }
 };
 
-/// Renders the shadow maps that the plan calls for.
-void draw_shadow_maps(GlFrame& frame);
+/// Renders the shadow maps that the plan calls for and that are not there.
+void draw_shadow_maps(GlFrame& frame, const ShadowPass& pass);
 
 /// One sample of each pixel at `at_px` of it (0.5, 0.5: the middle), lit by every lamp and added to
 /// the film. query: samples of a pixel and lamp, and the first lamp's first set; the other lamps'

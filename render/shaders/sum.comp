@@ -25,6 +25,7 @@ layout(location = 0) uniform float dim;
 layout(location = 1) uniform ivec3 mip;  // this level, the coarsest, q
 layout(location = 2) uniform ivec2 finest_texels;
 layout(location = 3) uniform bool is_first;  // dispatch of this slab and level
+layout(location = 4) uniform int first_row;  // of the rows that are dispatched
 
 // Not 0: pixels are left to the program by moments, by pieces.
 layout(std430, binding = 7) restrict buffer Left { uint is_left[2]; };
@@ -176,7 +177,7 @@ void add(ivec2 pixel, Surface surface, vec3 irradiance, float alpha) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     if (any(greaterThanEqual(pixel, frame.size_px.xy)))
         return;
     Surface surface = surface_at(pixel);

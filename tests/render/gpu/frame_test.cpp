@@ -85,22 +85,23 @@ struct LitFrame {
 LitFrame light_by_gl(Device& device, const Scene& scene, const RenderOptions& options) {
     RenderReport report;
     const Opening opening = open_scene(scene, options, render::Device::Gl, report);
-    GlFrame frame{scene, options, opening, report.plan, device, {}, {}, {}, {}, {}};
-    frame.scene_buffers = upload_scene(device, scene);
-    frame.scene_buffers.materials =
-        upload_materials(device, {planned_brdf(scene.materials[0], report.plan)});
-    frame.surfaces = make_surface_pass(device, frame.scene_buffers, opening.size_px);
-    frame.on_card = upload_lamps(device, opening.lamps, report.plan, options);
-    frame.passes = make_light_passes(device, report.plan, options, false);
-    frame.film = make_film(device, opening.size_px, opening.lamps.lamps.size(), false);
+    SceneBuffers buffers = upload_scene(device, scene);
+    buffers.materials = upload_materials(device, {planned_brdf(scene.materials[0], report.plan)});
+    SurfacePass surfaces = make_surface_pass(device, buffers, opening.size_px);
+    LampsOnCard on_card;
+    upload_lamps(device, opening.lamps, report.plan, options, on_card);
+    LightPasses passes = make_light_passes(device, report.plan, options, false);
+    Film film = make_film(device, opening.size_px, opening.lamps.lamps.size(), false);
+    GlFrame frame{scene,   options,  opening, report.plan, device,
+                  buffers, surfaces, on_card, passes,      film};
     SampleQuery query;
     query.size_px = opening.size_px;
     query.sets = sets_of(options, options.samples);
     query.seed = options.seed;
     add_pass(frame, glm::dvec2(0.5), query, 1.0F);
     LitFrame lit{make_picture(opening.lamps, opening.size_px, {}), {}};
-    read_film(frame.film, 1.0F, lit.picture);
-    lit.hits = read_hits(frame.surfaces.surfaces);
+    read_film(film, 1.0F, lit.picture);
+    lit.hits = read_hits(surfaces.surfaces);
     return lit;
 }
 
