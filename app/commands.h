@@ -15,6 +15,7 @@ void add_pack(CLI::App& app);
 void add_info(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);
+void add_view(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_lab(CLI::App& app);
 void add_devices(CLI::App& app);

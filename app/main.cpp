@@ -61,6 +61,7 @@ void add_commands(CLI::App& app) {
     nearfield::app::add_info(app);
     nearfield::app::add_probe(app);
     nearfield::app::add_render(app);
+    nearfield::app::add_view(app);
     nearfield::app::add_bench(app);
     nearfield::app::add_devices(app);
     nearfield::app::add_preview(app);

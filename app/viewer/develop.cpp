@@ -5,6 +5,7 @@
 #include "render/metrics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nearfield::viewer {
@@ -13,8 +14,7 @@ namespace {
 constexpr double kLeastError = 1e-3, kMostError = 1.0;  // ends of the errors' scale
 
 double luminance_at(const std::vector<float>& rgb, std::size_t k) {
-    return static_cast<double>(
-        shared::luminance709({rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]}));
+    return static_cast<double>(shared::luminance709({rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]}));
 }
 
 void set(std::vector<unsigned char>& rgba, std::size_t k, glm::u8vec3 color) {
@@ -74,9 +74,13 @@ bool Look::operator==(const Look& other) const {
 }
 
 glm::u8vec3 scale_color(double position) {
-    static constexpr std::array<glm::vec3, 7> kStops = {
-        {{12, 10, 60}, {30, 70, 200}, {20, 180, 200}, {70, 200, 70}, {240, 220, 50}, {230, 60, 30},
-         {255, 240, 240}}};
+    static const std::array<glm::vec3, 7> kStops = {{{12, 10, 60},
+                                                     {30, 70, 200},
+                                                     {20, 180, 200},
+                                                     {70, 200, 70},
+                                                     {240, 220, 50},
+                                                     {230, 60, 30},
+                                                     {255, 240, 240}}};
     const double at = std::clamp(position, 0.0, 1.0) * (kStops.size() - 1);
     const auto stop = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
     const auto share = static_cast<float>(at - static_cast<double>(stop));
@@ -107,17 +111,17 @@ Developed develop(const Frame& frame, const Mixed& mixed, const Look& look) {
     return developed;
 }
 
-Developed beside(const Developed& left, const Developed& right, int at_px) {
-    Developed both = left;
-    for (int y = 0; y < left.size_px.y; ++y)
-        for (int x = std::clamp(at_px, 0, left.size_px.x); x < left.size_px.x; ++x) {
-            const auto k = static_cast<std::size_t>(y * left.size_px.x + x);
-            const glm::ivec2 from = glm::ivec2(x, y) * right.size_px / left.size_px;
-            const auto other = static_cast<std::size_t>(from.y * right.size_px.x + from.x);
-            set(both.rgba, k,
+Developed beside(const Developed& left, const Developed& right, double split) {
+    Developed both = right;
+    const auto at_px = static_cast<int>(split * right.size_px.x);
+    for (int y = 0; y < both.size_px.y; ++y)
+        for (int x = 0; x <= std::min(at_px, both.size_px.x - 1); ++x) {
+            const glm::ivec2 from = glm::ivec2(x, y) * left.size_px / both.size_px;
+            const auto other = static_cast<std::size_t>(from.y * left.size_px.x + from.x);
+            set(both.rgba, static_cast<std::size_t>(y * both.size_px.x + x),
                 x == at_px ? glm::u8vec3(255)
-                           : glm::u8vec3(right.rgba[4 * other], right.rgba[4 * other + 1],
-                                         right.rgba[4 * other + 2]));
+                           : glm::u8vec3(left.rgba[4 * other], left.rgba[4 * other + 1],
+                                         left.rgba[4 * other + 2]));
         }
     return both;
 }
@@ -136,11 +140,10 @@ Difference difference_of(const Mixed& a, const Mixed& b) {
     difference.p95_rel = error.p95;
     difference.map = {b.size_px, std::vector<unsigned char>(4 * pixels), 0.0};
     for (std::size_t k = 0; k < pixels; ++k) {
-        const double relative =
-            reference_y[k] > 0.0F ? std::abs(static_cast<double>(y[k] / reference_y[k]) - 1.0)
-                                  : 0.0;
-        set(difference.map.rgba, k,
-            scale_color(scale_position(relative, kLeastError, kMostError)));
+        const double relative = reference_y[k] > 0.0F
+                                    ? std::abs(static_cast<double>(y[k] / reference_y[k]) - 1.0)
+                                    : 0.0;
+        set(difference.map.rgba, k, scale_color(scale_position(relative, kLeastError, kMostError)));
     }
     return difference;
 }

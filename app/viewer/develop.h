@@ -6,6 +6,7 @@
 #include "render/display.h"
 
 #include <glm/glm.hpp>
+#include <glm/gtc/type_precision.hpp>
 
 #include <array>
 #include <optional>
@@ -25,13 +26,12 @@ struct Look {
     render::DisplayOptions display;
     double least_lux = 0.1, most_lux = 1000;  // ends of the scale, which is logarithmic
     bool has_isolux = false;
-    std::array<double, 8> isolux = {0.5, 1, 3, 10, 30, 100, 300, 1000};  // as drawn over all
+    std::array<double, 8> isolux = {0.5, 1, 3, 10, 30, 100, 300, 1000};  // lines
 
     bool operator==(const Look&) const;
 };
 
-/// The scale's color at 0 ... 1, linear steps in luminance left out: dark blue, cyan, green, yellow,
-/// red, white; 8-bit sRGB. After "Turbo" in spirit, few stops.
+/// The scale's color at 0 ... 1: dark blue, blue, cyan, green, yellow, red, white; 8-bit sRGB.
 glm::u8vec3 scale_color(double position);
 /// Where a value lies on the scale between two ends, 0 ... 1, logarithmic.
 double scale_position(double value, double least, double most);
@@ -45,9 +45,9 @@ struct Developed {
 /// Tone mapping is render::display's, bit by bit.
 Developed develop(const Frame& frame, const Mixed& mixed, const Look& look);
 
-/// Left of `at_px` (of left's pixels) one picture, right of it the other, which may be of another
-/// size; a line between.
-Developed beside(const Developed& left, const Developed& right, int at_px);
+/// Left of `split` of the width (0 ... 1) one picture, right of it the other, on whose pixels both
+/// are; a line between.
+Developed beside(const Developed& left, const Developed& right, double split);
 
 /// Lab difference and error map of two mixed views of one size: as render's comparison.
 struct Difference {

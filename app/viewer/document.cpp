@@ -65,11 +65,11 @@ void set_pose(Document& document, EditedLamp& lamp, const glm::dmat4& pose) {
     if (!lamp.mirror)
         return;
     if (EditedLamp* partner = find(document, lamp.mirror->partner)) {
-        // The partner may be mirrored itself or not (a lamp that is its own mirror image): it stays.
+        // The partner may be mirrored itself or not (a lamp that is its own mirror image): it
+        // stays.
         const bool was_mirrored =
             glm::determinant(glm::dmat3(partner->luminaire.world_from_luminaire)) < 0.0;
-        glm::dmat4 image =
-            mirror_matrix(lamp.mirror->point_world_m, lamp.mirror->normal) * pose;
+        glm::dmat4 image = mirror_matrix(lamp.mirror->point_world_m, lamp.mirror->normal) * pose;
         if ((glm::determinant(glm::dmat3(image)) < 0.0) != was_mirrored)
             image[0] = -image[0];
         partner->luminaire.world_from_luminaire = image;
@@ -148,8 +148,7 @@ struct Apply {
     void operator()(const PartPartners& edit) { part(document, edit.lamp); }
     void operator()(const Remove& edit) {
         part(document, edit.lamp);
-        std::erase_if(document.lamps,
-                      [&](const EditedLamp& lamp) { return lamp.id == edit.lamp; });
+        std::erase_if(document.lamps, [&](const EditedLamp& lamp) { return lamp.id == edit.lamp; });
     }
     void operator()(const Add& edit) {
         if (is_finite(edit.luminaire.world_from_luminaire))
@@ -194,16 +193,27 @@ const EditedLamp* find_lamp(const Document& document, int id) {
     return found == document.lamps.end() ? nullptr : &*found;
 }
 
-Document apply(const Document& document, const Edit& edit) {
+bool is_lit(const EditedLamp& lamp) {
+    return lamp.luminaire.on && lamp.luminaire.dim > 0.0;
+}
+
+bool is_alike(const EditedLamp& a, const EditedLamp& b) {
+    return a.luminaire.path == b.luminaire.path &&
+           a.luminaire.world_from_luminaire == b.luminaire.world_from_luminaire &&
+           a.luminaire.excludes == b.luminaire.excludes;
+}
+
+Document edited(const Document& document, const Edit& edit) {
     Apply next{document};
     std::visit(next, edit);
     return std::move(next.document);
 }
 
 std::string name_of(const Edit& edit) {
-    constexpr const char* kNames[] = {"move",       "dim",     "tint",  "switch", "rename",
-                                      "aim",        "duplicate", "mirror image", "make partners",
-                                      "part partners", "remove", "add",   "bookmark"};
+    constexpr const char* kNames[] = {"move",          "dim",           "tint",      "switch",
+                                      "rename",        "aim",           "duplicate", "mirror image",
+                                      "make partners", "part partners", "remove",    "add",
+                                      "bookmark"};
     static_assert(std::size(kNames) == std::variant_size_v<Edit>);
     return kNames[edit.index()];
 }

@@ -42,6 +42,11 @@ Scene edited_scene(const Document& document);
 
 const EditedLamp* find_lamp(const Document& document, int id);
 
+/// On, and not dimmed to nothing.
+bool is_lit(const EditedLamp& lamp);
+/// Whether one's light is the other's, but for dim and tint.
+bool is_alike(const EditedLamp& a, const EditedLamp& b);
+
 struct SetPose {
     int lamp = 0;
     glm::dmat4 world_from_luminaire{1.0};  // a partner follows, mirrored
@@ -108,9 +113,9 @@ using Edit = std::variant<SetPose,
                           AddBookmark>;
 
 /// The document after the edit. One that names a lamp that is not there, or says what a file could
-/// not hold (a dim below 0 or above 1e9, a tint outside 0 ... 1, a pose that is not finite), changes
-/// nothing. Names of lamps and bookmarks stay unique.
-Document apply(const Document& document, const Edit& edit);
+/// not hold (a dim below 0 or above 1e9, a tint outside 0 ... 1, a pose that is not finite),
+/// changes nothing. Names of lamps and bookmarks stay unique.
+Document edited(const Document& document, const Edit& edit);
 
 /// In a word or two, for the list of what can be undone.
 std::string name_of(const Edit& edit);

@@ -23,16 +23,15 @@ double angle_to_arrow(const Gizmo& gizmo, int axis, const Ray& ray) {
     constexpr double kBegin = 0.15;
     const double along = along_axis_m(gizmo, axis, ray).value_or(gizmo.size_m);
     const double on_arrow = std::clamp(along, kBegin * gizmo.size_m, gizmo.size_m);
-    return angle_to(ray, gizmo.at_world_m +
-                             on_arrow * gizmo.axes[static_cast<std::size_t>(axis)]);
+    return angle_to(ray, gizmo.at_world_m + on_arrow * gizmo.axes[static_cast<std::size_t>(axis)]);
 }
 
 glm::dvec3 on_ring(const Gizmo& gizmo, int axis, double angle_rad) {
     const auto& a = gizmo.axes;
     const auto u = static_cast<std::size_t>((axis + 1) % 3),
                v = static_cast<std::size_t>((axis + 2) % 3);
-    return gizmo.at_world_m + kRingOfSize * gizmo.size_m *
-                                  (std::cos(angle_rad) * a[u] + std::sin(angle_rad) * a[v]);
+    return gizmo.at_world_m +
+           kRingOfSize * gizmo.size_m * (std::cos(angle_rad) * a[u] + std::sin(angle_rad) * a[v]);
 }
 
 double angle_to_ring(const Gizmo& gizmo, int axis, const Ray& ray) {
@@ -40,8 +39,7 @@ double angle_to_ring(const Gizmo& gizmo, int axis, const Ray& ray) {
     double smallest = glm::pi<double>();
     for (int k = 0; k < kPoints; ++k)
         smallest = std::min(
-            smallest,
-            angle_to(ray, on_ring(gizmo, axis, glm::two_pi<double>() * k / kPoints)));
+            smallest, angle_to(ray, on_ring(gizmo, axis, glm::two_pi<double>() * k / kPoints)));
     return smallest;
 }
 

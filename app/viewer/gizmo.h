@@ -45,9 +45,9 @@ std::optional<double> along_axis_m(const Gizmo& gizmo, int axis, const Ray& ray)
 /// About the axis: the angle at which the ray meets the ring's plane. Nothing where it does not.
 std::optional<double> about_axis_rad(const Gizmo& gizmo, int axis, const Ray& ray);
 
-/// A drag: the pose that the mouse has made of the one it began with, from where it took the handle.
-/// step: multiples of it alone (metres, or degrees), 0: any. The pose it began with where a ray says
-/// nothing.
+/// A drag: the pose that the mouse has made of the one it began with, from where it took the
+/// handle. step: multiples of it alone (metres, or degrees), 0: any. The pose it began with where a
+/// ray says nothing.
 struct Drag {
     Handle handle;
     Gizmo gizmo;  // when it began

@@ -26,7 +26,7 @@ bool step(History& history, std::vector<History::Step>& from, std::vector<Histor
 }  // namespace
 
 void edit(History& history, const Edit& edit, int gesture) {
-    Document next = apply(history.now, edit);
+    Document next = edited(history.now, edit);
     if (gesture == 0 || gesture != history.gesture) {
         history.past.push_back({std::move(history.now), name_of(edit)});
         if (history.past.size() > kMostSteps)

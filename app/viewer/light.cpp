@@ -95,13 +95,11 @@ RegionStatistics statistics_of(const Frame& frame,
     RegionStatistics found;
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
-            const auto k =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.size_px.x) +
-                static_cast<std::size_t>(x);
+            const auto k = static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.size_px.x) +
+                           static_cast<std::size_t>(x);
             if (!(frame.depth_m[k] > 0.0F))
                 continue;
-            const auto lux =
-                static_cast<double>(shared::luminance709(rgb_at(mixed.irradiance, k)));
+            const auto lux = static_cast<double>(shared::luminance709(rgb_at(mixed.irradiance, k)));
             found.least = found.pixels == 0 ? lux : std::min(found.least, lux);
             found.largest = std::max(found.largest, lux);
             found.mean += lux;

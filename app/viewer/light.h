@@ -19,8 +19,8 @@ namespace nearfield::viewer {
 
 /// One lamp's light at every pixel; [row from the top][column][channel].
 struct LampLight {
-    int lamp = 0;      // id
-    double dim = 1.0;  // that it was rendered with; tint: none
+    int lamp = 0;                             // id
+    double dim = 1.0;                         // that it was rendered with; tint: none
     std::vector<float> radiance, irradiance;  // R, G, B
     std::vector<float> sigma, bias;           // of radiance Y; bias empty where sums are exact
 };
@@ -32,8 +32,7 @@ struct Frame {
     Quality quality;
     Quantity quantity = Quantity::Photometric;
     std::vector<std::shared_ptr<const LampLight>> lamps;
-    std::vector<float> depth_m;  // 0: nothing is seen
-    std::vector<float> normal;   // X, Y, Z
+    std::vector<float> depth_m;   // 0: nothing is seen
     render::RenderReport report;  // of the last lamp; times and memory by pass of all
     double time_s = 0;            // that it took
     int serial = 0;               // rises with every frame

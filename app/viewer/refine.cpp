@@ -16,17 +16,6 @@ constexpr std::size_t kMostKept = 3;  // drafts, halves and pictures of one view
 /// A name that no camera of a file has.
 const std::string kCameraName = "the viewer's";
 
-bool is_lit(const EditedLamp& lamp) {
-    return lamp.luminaire.on && lamp.luminaire.dim > 0.0;
-}
-
-/// Whether one's light is the other's, but for how it is mixed.
-bool has_light_of(const EditedLamp& lamp, const EditedLamp& rendered) {
-    return lamp.luminaire.path == rendered.luminaire.path &&
-           lamp.luminaire.world_from_luminaire == rendered.luminaire.world_from_luminaire &&
-           lamp.luminaire.excludes == rendered.luminaire.excludes;
-}
-
 /// What is rendered: the request's scene from its camera, lamps without tint (mixing adds it).
 Scene scene_of(const Request& request) {
     Scene scene = edited_scene(request.document);
@@ -38,18 +27,15 @@ Scene scene_of(const Request& request) {
     return scene;
 }
 
-void add_costs(const std::vector<render::PassReport>& from, std::vector<render::PassReport>& to) {
-    for (const render::PassReport& cost : from) {
-        const auto same = std::find_if(to.begin(), to.end(), [&](const render::PassReport& one) {
-            return one.id == cost.id;
-        });
-        if (same == to.end()) {
-            to.push_back(cost);
-            continue;
-        }
-        same->time_s += cost.time_s;
-        same->bytes = std::max(same->bytes, cost.bytes);
-    }
+/// Times of lamps add; what passes hold is there once.
+void add_costs(const std::vector<render::PassReport>& of_others,
+               std::vector<render::PassReport>& costs) {
+    for (render::PassReport& cost : costs)
+        for (const render::PassReport& other : of_others)
+            if (other.id == cost.id) {
+                cost.time_s += other.time_s;
+                cost.bytes = std::max(cost.bytes, other.bytes);
+            }
 }
 
 }  // namespace
@@ -90,8 +76,8 @@ bool Refiner::has(const Request& request, const Quality& quality) const {
     return std::all_of(request.document.lamps.begin(), request.document.lamps.end(),
                        [&](const EditedLamp& lamp) {
                            const auto known = kept->rendered.find(lamp.id);
-                           return !is_lit(lamp) || (known != kept->rendered.end() &&
-                                                    has_light_of(lamp, known->second));
+                           return !is_lit(lamp) ||
+                                  (known != kept->rendered.end() && is_alike(lamp, known->second));
                        });
 }
 
@@ -108,9 +94,9 @@ void Refiner::render_lamp(const Scene& scene,
     Frame& frame = kept.frame;
     frame.size_px = rendered.picture.size_px;
     frame.depth_m = std::move(layers[render::kDepth].values);
-    frame.normal = std::move(layers[render::kNormal].values);
     frame.quantity = rendered.report.quantity;
-    add_costs(frame.report.costs, rendered.report.costs);
+    if (has_rendered_)
+        add_costs(frame.report.costs, rendered.report.costs);
     frame.report = std::move(rendered.report);
     has_rendered_ = true;
     if (!lamp)
@@ -134,7 +120,6 @@ Frame Refiner::render(const Request& request,
     const double start_s = now_s();
     has_rendered_ = false;
     Kept& kept = keep(request, quality);
-    kept.frame.report.costs.clear();
     render::RenderHooks hooks;
     hooks.is_stopped = is_stopped;
     std::optional<Scene> scene;
@@ -144,7 +129,7 @@ Frame Refiner::render(const Request& request,
         if (!is_lit(lamps[k]))
             continue;
         const auto known = kept.rendered.find(lamps[k].id);
-        if (known == kept.rendered.end() || !has_light_of(lamps[k], known->second)) {
+        if (known == kept.rendered.end() || !is_alike(lamps[k], known->second)) {
             if (!scene)
                 scene = scene_of(request);
             render_lamp(*scene, k, request, hooks, kept);

@@ -37,8 +37,8 @@ class Refiner {
         Camera camera;
         Quality quality;
         glm::ivec2 size_px{0};
-        Frame frame;                                      // its lamps: see below
-        std::map<int, EditedLamp> rendered;               // by id, as they were
+        Frame frame;                         // its lamps: see below
+        std::map<int, EditedLamp> rendered;  // by id, as they were
         std::map<int, std::shared_ptr<const LampLight>> lights;
     };
 

@@ -44,13 +44,12 @@ std::optional<Beams> beams_of(const Document& document) {
     Beams beams{glm::dvec3(0.0), glm::dvec3(0.0)};
     for (const EditedLamp& lamp : document.lamps) {
         const glm::dmat4& pose = lamp.luminaire.world_from_luminaire;
-        beams.from_world_m +=
-            glm::dvec3(pose[3]) / static_cast<double>(document.lamps.size());
+        beams.from_world_m += glm::dvec3(pose[3]) / static_cast<double>(document.lamps.size());
         beams.ahead += glm::normalize(glm::dvec3(pose[2]));
     }
     beams.ahead.y = 0.0;
-    beams.ahead = glm::length(beams.ahead) > 1e-6 ? glm::normalize(beams.ahead)
-                                                  : glm::dvec3(0.0, 0.0, 1.0);
+    beams.ahead =
+        glm::length(beams.ahead) > 1e-6 ? glm::normalize(beams.ahead) : glm::dvec3(0.0, 0.0, 1.0);
     return beams;
 }
 

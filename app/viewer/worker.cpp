@@ -15,21 +15,11 @@ namespace {
 constexpr int kTrialDivisor = 8;
 constexpr double kDraft_s = 0.045;  // two of them within the tenth of a second that feels direct
 
-bool is_lit(const EditedLamp& lamp) {
-    return lamp.luminaire.on && lamp.luminaire.dim > 0.0;
-}
-
-bool has_same_light(const EditedLamp& a, const EditedLamp& b) {
-    return a.id == b.id && a.luminaire.path == b.luminaire.path &&
-           a.luminaire.world_from_luminaire == b.luminaire.world_from_luminaire &&
-           a.luminaire.excludes == b.luminaire.excludes;
-}
-
 /// Every lamp that is lit now was so before, alike.
 bool has_all_light(const Document& before, const Document& now) {
     for (const EditedLamp& lamp : now.lamps) {
         const EditedLamp* old = find_lamp(before, lamp.id);
-        if (is_lit(lamp) && (old == nullptr || !is_lit(*old) || !has_same_light(*old, lamp)))
+        if (is_lit(lamp) && (old == nullptr || !is_lit(*old) || !is_alike(*old, lamp)))
             return false;
     }
     return true;
@@ -112,6 +102,9 @@ struct Worker::Thread {
     void refine(const Request& request, int ticket);
     void try_dials(const Request& request, int ticket);
     void render_whole(const Request& request, const std::function<void(render::Rendered)>& use);
+    /// Does it, or tells why not.
+    void attempt(const std::function<void()>& work);
+    void run(const Work& work);
 };
 
 void Worker::Thread::refine(const Request& request, int ticket) {
@@ -163,63 +156,73 @@ void Worker::Thread::render_whole(const Request& request,
                                   const std::function<void(render::Rendered)>& use) {
     Scene scene = edited_scene(request.document);
     scene.cameras.insert(scene.cameras.begin(), request.camera);
-    render::RenderOptions options = options_of(
-        dials()[static_cast<std::size_t>(request.dial)].quality, request.size_px);
+    render::RenderOptions options =
+        options_of(dials()[static_cast<std::size_t>(request.dial)].quality, request.size_px);
     options.camera = request.camera.name;
     use(session.render(scene, options, render::begin_call(options, {})));
 }
 
+/// What was asked for since the last time.
+struct Worker::Work {
+    std::optional<Request> shown, dials;
+    std::vector<std::pair<Request, std::function<void(render::Rendered)>>> whole;
+    int ticket = 0;
+};
+
+std::optional<Worker::Work> Worker::wait_for_work() {
+    std::unique_lock lock(mutex_);
+    asked_.wait(lock, [this] { return is_ending_ || wanted_ || dials_wanted_ || !whole_.empty(); });
+    if (is_ending_)
+        return std::nullopt;
+    return Work{std::exchange(wanted_, std::nullopt), std::exchange(dials_wanted_, std::nullopt),
+                std::exchange(whole_, {}), ticket_};
+}
+
+void Worker::Thread::attempt(const std::function<void()>& work) {
+    std::string why;
+    try {
+        work();
+        return;
+    } catch (const render::Stopped&) {
+        return;  // the newest request is waiting
+    } catch (const std::exception& error) {
+        why = error.what();
+    }
+    is_complete = true;  // trying again would fail again
+    worker.tell([&](Progress& progress) {
+        progress.error = why;
+        progress.is_final = true;
+    });
+}
+
+void Worker::Thread::run(const Work& work) {
+    if (work.shown) {
+        last = work.shown;
+        is_complete = false;
+    }
+    for (const auto& [request, use] : work.whole)
+        attempt([&] { render_whole(request, use); });
+    if (work.dials)
+        attempt([&] { try_dials(*work.dials, work.ticket); });
+    // Also what trials and whole pictures have interrupted.
+    if (last && !is_complete)
+        attempt([&] { refine(*last, work.ticket); });
+}
+
 void Worker::loop() {
     std::optional<Thread> thread;
-    const auto fail = [&](const std::string& why) {
-        tell([&](Progress& progress) {
-            progress.error = why;
-            progress.is_final = true;
-        });
-    };
-    while (true) {
-        std::optional<Request> shown, dials;
-        std::vector<std::pair<Request, std::function<void(render::Rendered)>>> whole;
-        int ticket = 0;
-        {
-            std::unique_lock lock(mutex_);
-            asked_.wait(lock, [&] {
-                return is_ending_ || wanted_ || dials_wanted_ || !whole_.empty();
-            });
-            if (is_ending_)
-                break;
-            shown = std::exchange(wanted_, std::nullopt);
-            dials = std::exchange(dials_wanted_, std::nullopt);
-            whole = std::exchange(whole_, {});
-            ticket = ticket_;
-        }
+    while (const std::optional<Work> work = wait_for_work()) {
         try {
-            if (!thread) {
+            if (!thread)
                 thread.emplace(*this);
-            }
-            if (shown) {
-                thread->last = shown;
-                thread->is_complete = false;
-            }
-            for (const auto& [request, use] : whole)
-                thread->render_whole(request, use);
-            if (thread->last && !thread->is_complete && !dials)
-                thread->refine(*thread->last, ticket);
-            if (dials)
-                thread->try_dials(*dials, ticket);
-            if (thread->last && !thread->is_complete)
-                thread->refine(*thread->last, ticket);
-        } catch (const render::Stopped&) {
-            // The newest request is waiting.
-        } catch (const Error& error) {
-            if (thread)
-                thread->is_complete = true;
-            fail(error.what());
-        } catch (const std::exception& error) {
-            if (thread)
-                thread->is_complete = true;
-            fail(error.what());
+        } catch (const Error& error) {  // no OpenGL
+            tell([&](Progress& progress) {
+                progress.error = error.what();
+                progress.is_final = true;
+            });
+            continue;
         }
+        thread->run(*work);
     }
 }
 

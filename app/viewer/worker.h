@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The renderer's thread: the interface asks, goes on, and is woken when there is something to show.
+/// The renderer's thread: the interface asks, goes on, and is woken when there is something to
+/// show.
 #pragma once
 
 #include "app/viewer/light.h"
@@ -14,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace nearfield::viewer {
@@ -68,7 +70,9 @@ class Worker {
     Progress progress() const;
 
   private:
+    struct Work;
     struct Thread;  // what lives in the thread
+    std::optional<Work> wait_for_work();
     void loop();
     void tell(const std::function<void(Progress&)>& change);
     bool is_superseded(int ticket) const;

@@ -274,7 +274,7 @@ std::string resolve_uri(const std::string& uri,
     return (std::filesystem::path(base_folder) / decoded).string();
 }
 
-GuardedFile read_guarded(const std::string& path) {
+GuardedFile read_guarded(const std::string& path, Members members) {
     GuardedFile file = split(read_bytes(path), path);
     json document = parse(file.json, path);
     check_shape(document, path);
@@ -285,6 +285,8 @@ GuardedFile read_guarded(const std::string& path) {
     } catch (const json::exception& error) {
         throw Error{kReadingScene, path, "glTF 2.0", error.what()};
     }
+    if (members == Members::All)
+        return file;
     for (const char* unused :
          {"images", "textures", "samplers", "animations", "skins", "extensions", "extras"})
         document.erase(unused);

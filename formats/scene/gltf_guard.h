@@ -19,9 +19,12 @@ struct GuardedFile {
     std::string base_folder;  // of relative URIs
 };
 
+/// All: with what this project does not use, as it stands in the file.
+enum class Members { Used, All };
+
 /// Throws Error with file and JSON place where the file is not glTF 2.0 or breaks a rule that later
 /// steps rely on.
-GuardedFile read_guarded(const std::string& path);
+GuardedFile read_guarded(const std::string& path, Members members = Members::Used);
 
 /// The content as a GLB again, with chunks that are what their lengths say.
 std::string join_glb(const GuardedFile& file);

@@ -70,6 +70,7 @@ void read_luminaire(Reading& reading,
                     const tinygltf::Node& node,
                     const tinygltf::Value& extension,
                     const glm::dmat4& world_from_node,
+                    const glm::dmat4& world_from_parent,
                     int index) {
     const std::string place = fmt::format("nodes[{}]", index);
     const auto where = [&](const std::string& member) {
@@ -90,6 +91,7 @@ void read_luminaire(Reading& reading,
     LuminaireInstance lamp;
     lamp.name = node.name;
     lamp.node = index;
+    lamp.world_from_parent = world_from_parent;
     lamp.world_from_luminaire = world_from_node;
     uniform_scale(world_from_node, reading.at(place));
     if (!extension.Get("uri").IsString())
@@ -153,7 +155,10 @@ void read_camera(Reading& reading,
     reading.scene.cameras.push_back(std::move(camera));
 }
 
-void read_node(Reading& reading, int index, const glm::dmat4& world_from_node) {
+void read_node(Reading& reading,
+               int index,
+               const glm::dmat4& world_from_node,
+               const glm::dmat4& world_from_parent) {
     const tinygltf::Node& node = reading.model.nodes[static_cast<std::size_t>(index)];
     const std::string place = fmt::format("nodes[{}]", index);
     if (node.mesh >= 0) {
@@ -168,7 +173,7 @@ void read_node(Reading& reading, int index, const glm::dmat4& world_from_node) {
         read_camera(reading, node, world_from_node, place);
     if (const auto found = node.extensions.find(kLuminaireExtension);
         found != node.extensions.end())
-        read_luminaire(reading, node, found->second, world_from_node, index);
+        read_luminaire(reading, node, found->second, world_from_node, world_from_parent, index);
 }
 
 }  // namespace
@@ -215,7 +220,7 @@ void read_nodes(Reading& reading) {
         const glm::dmat4 world_from_node =
             visit.world_from_parent * local_matrix(node, reading.at(place));
         check_matrix(world_from_node, reading.at(place));
-        read_node(reading, visit.node, world_from_node);
+        read_node(reading, visit.node, world_from_node, visit.world_from_parent);
         push(node.children, world_from_node, place + ".children");
     }
 }

@@ -70,6 +70,7 @@ struct LuminaireInstance {
     glm::vec3 tint{1.0F};               // factors of its red, green and blue, 0 ... 1
     std::vector<std::string> excludes;  // nodes or meshes by name that cast no shadow in its light
     int node = -1;                      // of the file that it was read from; -1: of none
+    glm::dmat4 world_from_parent{1.0};  // of that node's parent
 };
 
 /// Light from far away all around (formats/environment).
@@ -101,6 +102,19 @@ double uniform_scale(const glm::dmat4& matrix, const std::string& where);
 /// Throws Error with file and JSON place, such as "scene.gltf:
 /// nodes[3].extensions.NEARFIELD_luminaire.dim".
 Scene read_scene(const std::string& path);
+
+/// What becomes of a scene's file. Luminaires whose `node` is one of the file's are that node's;
+/// the others get nodes of their own, and nodes that none of them is of are lamps no longer.
+struct SceneUpdate {
+    std::vector<LuminaireInstance> luminaires;
+    std::vector<Camera> new_cameras;  // added
+};
+
+/// Writes the scene of the file `from` with other luminaires to `path`, which may be the same:
+/// whatever else the file holds, known to this project or not, stays as it is. The two are both
+/// .gltf or both .glb. Files that it names are named from path's folder. Throws Error where
+/// read_scene would, and where path cannot be written; whole or not at all.
+void update_scene(const std::string& from, const SceneUpdate& update, const std::string& path);
 
 enum class BufferPlace { Embedded, SideFile };
 

@@ -45,7 +45,8 @@ class Device {
     std::uint64_t allocated_bytes() const { return allocated_bytes_; }
     void count_allocation(std::uint64_t bytes) { allocated_bytes_ += bytes; }
 
-    /// From now on continue_or_stop() and run_pass() ask it, in this thread; empty: nothing is asked.
+    /// From now on continue_or_stop() and run_pass() ask it, in this thread; empty: nothing is
+    /// asked.
     void set_stop(std::function<bool()> is_stopped) { is_stopped_ = std::move(is_stopped); }
     bool can_be_stopped() const { return static_cast<bool>(is_stopped_); }
     /// Throws Stopped (render/report.h) where what was set says so.

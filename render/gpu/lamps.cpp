@@ -12,7 +12,8 @@ bool has_sums(const RenderOptions& options) {
 }
 
 bool has_cdfs(const RenderOptions& options) {
-    return options.sampler == model::Sampler::Pdis || options.sampler == model::Sampler::Precomputed;
+    return options.sampler == model::Sampler::Pdis ||
+           options.sampler == model::Sampler::Precomputed;
 }
 
 bool has_samples(const Plan& plan, const RenderOptions& options) {
@@ -31,7 +32,7 @@ SumSlab upload_sums(Device& device, const PlacedSlab& slab, const Plan& plan) {
     const bool has_color = plan.color.is_in;
     return slab.mips != nullptr
                ? upload_sum_slab(device, *slab.mips, has_color, placement_of(slab))
-                 : upload_sum_slab(device, *slab.prepared, has_color, placement_of(slab));
+               : upload_sum_slab(device, *slab.prepared, has_color, placement_of(slab));
 }
 
 SlabTextures upload_tables(Device& device,
@@ -95,10 +96,9 @@ void upload_lamps(Device& device,
     const bool is_of_other_kind = on_card.has_color != plan.color.is_in ||
                                   (on_card.has_cdfs != has_cdfs(options) && options.sampler);
     std::erase_if(on_card.files, [&](const auto& file) {
-        return is_of_other_kind || std::none_of(lamps.lamps.begin(), lamps.lamps.end(),
-                                                [&](const Lamp& lamp) {
-                                                    return lamp.file.get() == file.first;
-                                                });
+        return is_of_other_kind ||
+               std::none_of(lamps.lamps.begin(), lamps.lamps.end(),
+                            [&](const Lamp& lamp) { return lamp.file.get() == file.first; });
     });
     on_card.has_color = plan.color.is_in;
     on_card.has_cdfs = has_cdfs(options);

@@ -4,9 +4,9 @@
 #include "formats/files/error.h"
 #include "formats/files/provenance.h"
 #include "render/film.h"
+#include "render/gpu/frame_report.h"
 #include "render/gpu/headless.h"
 #include "render/gpu/passes.h"
-#include "render/gpu/storage.h"
 #include "render/materials.h"
 
 #include <algorithm>
@@ -41,9 +41,15 @@ struct Variant {
 };
 
 Variant variant_of(const Plan& plan, const RenderOptions& options, bool has_tangents) {
-    Variant variant{plan.color.is_in,  plan.has_gloss,   has_tangents,
-                    false,             false,            options.sampler,
-                    options.sequence,  options.shift,    options.shadow_maps.pcf_taps,
+    Variant variant{plan.color.is_in,
+                    plan.has_gloss,
+                    has_tangents,
+                    false,
+                    false,
+                    options.sampler,
+                    options.sequence,
+                    options.shift,
+                    options.shadow_maps.pcf_taps,
                     options.shadow_weights};
     for (const LampPlan& lamp : plan.lamps) {
         variant.any_with_shadows |= lamp.is_lit && lamp.has_shadows;
@@ -90,75 +96,12 @@ T& use(std::list<T>& kept, std::size_t most, const Fits& fits, const Make& make)
     return kept.front();
 }
 
-/// Albedo, depth and normal of what is drawn.
-void read_surfaces(const Surfaces& surfaces,
-                   const std::vector<shared::Brdf>& brdfs,
-                   Picture& picture) {
-    const std::vector<float> position = read_back(surfaces.position, surfaces.size_px, 4);
-    const std::vector<float> normal = read_back(surfaces.normal, surfaces.size_px, 4);
-    for (std::size_t k = 0; 4 * k < position.size(); ++k) {
-        const int material = static_cast<int>(position[4 * k + 3]) - 1;
-        if (material < 0)
-            continue;
-        for (std::size_t c = 0; c < 3; ++c) {
-            picture.layers[kAlbedo].values[3 * k + c] =
-                brdfs[static_cast<std::size_t>(material)].diffuse[static_cast<int>(c)];
-            picture.layers[kNormal].values[3 * k + c] = normal[4 * k + c];
-        }
-        picture.layers[kDepth].values[k] = normal[4 * k + 3];
-    }
-}
-
-/// What drawing keeps from lamp to lamp.
-std::uint64_t energy_bytes(const LightSamples& samples) {
-    return samples.entries * sizeof(float) + samples.totals * sizeof(double) +
-           samples.luminances * sizeof(float);
-}
-
-/// What passes hold that is made once, before they run.
-std::uint64_t bytes_before(const GlFrame& frame, std::uint64_t surface_bytes, PassId id) {
-    const glm::ivec2 size_px = frame.film.size_px;
-    const auto pixels =
-        static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y);
-    switch (id) {
-        case PassId::GBuffer:
-            return surface_bytes;
-        case PassId::LightSums:
-            return frame.on_card.sum_bytes;
-        case PassId::BoxEnergies:
-            return energy_bytes(frame.passes.samples) +
-                   energy_bytes(frame.passes.unshadowed_samples);
-        case PassId::Samples:
-            return frame.on_card.table_bytes;
-        case PassId::Accumulate:
-            return pixels * (16U * (4U + frame.film.of_lamp.size()) + (frame.film.bias ? 36U : 0U));
-        default:
-            return 0;
-    }
-}
-
-/// Costs by the plan's passes.
-void merge_costs(const GlFrame& frame, std::uint64_t surface_bytes, RenderReport& report) {
-    for (const PlannedPass& pass : report.plan.passes) {
-        PassReport cost{pass.id, 0.0,
-                        static_cast<double>(bytes_before(frame, surface_bytes, pass.id))};
-        for (const PassCost& one : frame.device.costs())
-            if (one.name == pass.name) {
-                cost.time_s += one.time_s;
-                cost.bytes += static_cast<double>(one.bytes);
-            }
-        if (pass.is_in)
-            report.costs.push_back(cost);
-    }
-}
-
 /// The luminaire's place among the lamps that are loaded: those that are on.
 std::size_t lamp_of(const Scene& scene, std::size_t luminaire) {
     const auto end = scene.luminaires.begin() + static_cast<std::ptrdiff_t>(luminaire);
     return static_cast<std::size_t>(
-        std::count_if(scene.luminaires.begin(), end, [](const LuminaireInstance& one) {
-            return one.on && one.dim > 0.0;
-        }));
+        std::count_if(scene.luminaires.begin(), end,
+                      [](const LuminaireInstance& one) { return one.on && one.dim > 0.0; }));
 }
 
 /// A call's stop, for the device; without it once the call is over.
@@ -230,11 +173,10 @@ struct Session::Kept {
     LightPasses& use_passes(const Plan& plan, const RenderOptions& options) {
         const Variant variant = variant_of(plan, options, scene_buffers->has_tangents);
         return use(
-                   variants, kMostVariants,
-                   [&](const auto& one) { return one.first == variant; },
+                   variants, kMostVariants, [&](const auto& one) { return one.first == variant; },
                    [&] {
-                       return std::pair(variant, make_light_passes(device, plan, options,
-                                                                   variant.has_tangents));
+                       return std::pair(
+                           variant, make_light_passes(device, plan, options, variant.has_tangents));
                    })
             .second;
     }
@@ -275,8 +217,7 @@ Rendered Session::render(const Scene& scene,
         brdfs.push_back(planned_brdf(material, plan));
     kept_->use_scene(scene, brdfs);
     upload_lamps(device, lamps, plan, options, kept_->on_card);
-    report.lamp_bytes =
-        static_cast<double>(kept_->on_card.sum_bytes + kept_->on_card.table_bytes);
+    report.lamp_bytes = static_cast<double>(kept_->on_card.sum_bytes + kept_->on_card.table_bytes);
     Target& target = kept_->use_target(opening.size_px, lamps.lamps.size(), has_bias);
     clear(target.film);
     GlFrame frame{scene,
@@ -297,7 +238,7 @@ Rendered Session::render(const Scene& scene,
     draw_shadow_maps(frame, kept_->shadow_pass);
     add_passes(frame, call, result.picture, report);
     read_surfaces(target.surfaces.surfaces, brdfs, result.picture);
-    merge_costs(frame, target.surface_bytes, report);
+    report_costs(frame, target.surface_bytes, report);
     report.q = options.sampler ? 0 : options.q;
     end_call(call, options, report);
     return result;

@@ -17,7 +17,8 @@ namespace nearfield::render::gpu {
 /// scene, programs, shadow maps and targets of the last sizes stay where they are as long as they
 /// hold. A picture has the same bits whatever was rendered before.
 ///
-/// Belongs to the thread that made it.
+/// Belongs to the thread that made it. Headless contexts share a display: no other one may be made
+/// or end while it lives.
 class Session {
   public:
     /// Throws Error as HeadlessContext.
@@ -26,11 +27,10 @@ class Session {
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// What render_gl gives. only: of the scene's luminaires, one that is on; the picture then holds
-    /// its light alone, bit by bit its part of the picture of all (the layers of the others are
-    /// black, and unmapped pixels are not counted).
-    /// Throws Error as render_gl, and Stopped where call.hooks.is_stopped says so; the session may
-    /// be used on after both.
+    /// What render_gl gives. only: of the scene's luminaires, one that is on; the picture then
+    /// holds its light alone, bit by bit its part of the picture of all (the layers of the others
+    /// are black, and unmapped pixels are not counted). Throws Error as render_gl, and Stopped
+    /// where call.hooks.is_stopped says so; the session may be used on after both.
     Rendered render(const Scene& scene,
                     const RenderOptions& options,
                     const Call& call,

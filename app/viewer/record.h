@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Pictures in files.
+#pragma once
+
+#include "app/viewer/viewer.h"
+
+#include <glm/glm.hpp>
+
+#include <string>
+
+namespace nearfield::viewer {
+
+/// The picture that is shown, .png, as it is: without panels. Throws Error where it cannot be
+/// written.
+void write_shown(const Viewer& viewer, const std::string& path);
+
+/// The picture of the view by the renderer's thread, as `nearfield render --device gl` writes it:
+/// .exr with all layers, or .png. Progress::error says what goes wrong.
+void write_picture_by(Worker& worker,
+                      const Viewer& viewer,
+                      glm::ivec2 size_px,
+                      const std::string& path);
+
+/// The same from cameras all around the pivot: PREFIX_001.png ..., with a scene PREFIX.gltf that
+/// has these cameras, and PREFIX.sh, whose commands make them again without a window. Throws Error
+/// where the scene cannot be written.
+void record_turntable(Worker& worker,
+                      const Viewer& viewer,
+                      glm::ivec2 size_px,
+                      const std::string& prefix,
+                      int frames);
+
+}  // namespace nearfield::viewer
