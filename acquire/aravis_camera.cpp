@@ -18,7 +18,9 @@ namespace nearfield::acquire {
 namespace {
 
 constexpr int kBuffers = 6;
-constexpr double kPatience_s = 3;         // beyond the exposure, until a frame must have come
+// Beyond the exposure, until a frame must have come. Generous: a camera that is gone is told by
+// control that is lost, and a machine may be too busy for seconds.
+constexpr double kPatience_s = 20;
 constexpr guint64 kPop_us = 50'000;       // between looks at Ctrl-C
 constexpr double kGainRounding_db = 0.1;  // cameras count gain in steps
 
@@ -112,6 +114,19 @@ void AravisCamera::set_packet_size(int bytes) {
                 [&](GError** error) { return arv_camera_gv_auto_packet_size(camera(), error); });
 }
 
+// Aravis' own settings are those of a stream that must keep up: a receive buffer as small as a
+// frame, a quarter of its packets asked for again, given up after 0.1 s. Here nothing hurries, and
+// the machine may be busy.
+void make_patient(ArvStream* stream) {
+    constexpr gint kSocketBuffer_bytes = 16 << 20;  // as far as the system allows
+    constexpr gdouble kMostAskedAgain = 2;          // of a frame's packets
+    constexpr guint kRetention_us = 1'000'000;      // since the frame's last packet
+    g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+                 kSocketBuffer_bytes, "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS,
+                 "packet-request-ratio", kMostAskedAgain, "frame-retention", kRetention_us,
+                 nullptr);
+}
+
 void AravisCamera::start_stream() {
     const auto payload = checked(*device_, "read the frame's size", [&](GError** error) {
         return arv_camera_get_payload(camera(), error);
@@ -121,8 +136,7 @@ void AravisCamera::start_stream() {
     }));
     ArvStream* stream = device_->stream.get();
     if (ARV_IS_GV_STREAM(stream))
-        g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_AUTO, "packet-resend",
-                     ARV_GV_STREAM_PACKET_RESEND_ALWAYS, nullptr);
+        make_patient(stream);
     for (int k = 0; k < kBuffers; ++k)
         arv_stream_push_buffer(stream, arv_buffer_new(payload, nullptr));
     checked(*device_, "start the camera",

@@ -41,9 +41,13 @@ std::string id_of(const std::string& name) {
     return camera == found.end() ? name : camera->id;
 }
 
-// A program that was killed keeps control until its heartbeat is missed, 3 s with most cameras.
+// How long a camera keeps control for a master that is silent: twice what most come with, since a
+// busy machine may be late with the heartbeat that is due every second.
+constexpr gint64 kHeartbeat_ms = 6000;
+
+// A program that was killed keeps control until its heartbeat is missed.
 void require_control(const Device& device) {
-    constexpr double kHeartbeats_s = 6, kBetweenTries_s = 0.2;
+    constexpr double kHeartbeats_s = 2e-3 * kHeartbeat_ms, kBetweenTries_s = 0.2;
     if (!ARV_IS_GV_DEVICE(device.device()))
         return;
     ArvGvDevice* gv_device = ARV_GV_DEVICE(device.device());
@@ -55,6 +59,15 @@ void require_control(const Device& device) {
         std::this_thread::sleep_for(std::chrono::duration<double>(kBetweenTries_s));
         arv_gv_device_take_control(gv_device, nullptr);
     }
+}
+
+// Best effort: a camera that does not let it be set has its own patience.
+void lengthen_heartbeat(const Device& device) {
+    constexpr const char* kFeature = "GevHeartbeatTimeout";
+    if (!device.has(kFeature))
+        return;
+    if (arv_device_get_integer_feature_value(device.device(), kFeature, nullptr) < kHeartbeat_ms)
+        arv_device_set_integer_feature_value(device.device(), kFeature, kHeartbeat_ms, nullptr);
 }
 
 }  // namespace
@@ -76,6 +89,7 @@ std::shared_ptr<Device> open_device(const std::string& name) {
     device->camera.reset(checked(
         *device, "open camera", [&](GError** error) { return arv_camera_new(id.c_str(), error); }));
     require_control(*device);
+    lengthen_heartbeat(*device);
     // Values out of range are refused instead of silently taken or dropped.
     arv_device_set_range_check_policy(device->device(), ARV_RANGE_CHECK_POLICY_ENABLE);
     device->lost_handler =

@@ -2,6 +2,7 @@
 #include "acquire/checks.h"
 #include "acquire/session.h"
 #include "acquire/settings.h"
+#include "acquire/whole_frame.h"
 
 #include <fmt/format.h>
 
@@ -30,8 +31,8 @@ double brightest_share(const capture::Frame& frame) {
 double look(Camera& camera, double exposure_us, const ShouldStop& should_stop) {
     set_exposure_checked(camera, exposure_us);
     for (int k = 0; k < kSettle; ++k)
-        camera.expose(should_stop);
-    return brightest_share(camera.expose(should_stop).frame);
+        expose_whole(camera, should_stop);
+    return brightest_share(expose_whole(camera, should_stop).frame);
 }
 
 // The brightest pixel's share of the range in a microsecond, by an exposure that shows it well.

@@ -4,6 +4,7 @@
 #include "acquire/frame_queue.h"
 #include "acquire/position_check.h"
 #include "acquire/settings.h"
+#include "acquire/whole_frame.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -21,8 +22,6 @@ using capture::EventRecord;
 using capture::FrameRecord;
 using capture::Shot;
 using capture::ShotKind;
-
-constexpr int kMostTries = 4;  // of one shot, where frames come late or torn
 
 // One session under way.
 struct Session {
@@ -65,7 +64,7 @@ void set_exposure(Session& session, double exposure_us) {
     session.read_exposure_us = set_exposure_checked(*session.bench.camera, exposure_us);
     for (int k = 0; k < session.result.discarded_frames; ++k)
         session.last_hash =
-            raw_hash(session.bench.camera->expose(session.options.should_stop).frame);
+            raw_hash(expose_whole(*session.bench.camera, session.options.should_stop).frame);
     session.exposure_us = exposure_us;
 }
 
@@ -201,6 +200,18 @@ void find_latency(Session& session, const std::vector<Shot>& shots) {
     session.exposure_us = 0;
 }
 
+// A device that is lost before the first frame comes back as later ones do.
+void prepare(Session& session, const std::vector<Shot>& shots) {
+    for (bool is_ready = false; !is_ready;) {
+        try {
+            find_latency(session, shots);
+            is_ready = true;
+        } catch (const DeviceLost& lost) {
+            reopen_bench(session, lost);
+        }
+    }
+}
+
 capture::SessionRecord describe(const Session& session) {
     const CameraIdentity identity = session.bench.camera->identity();
     return {session.number,
@@ -231,7 +242,7 @@ SessionResult run_session(capture::CaptureWriter& writer,
     if (shots.empty())
         return session.result;
     open_bench(session);
-    find_latency(session, shots);
+    prepare(session, shots);
     writer.add(describe(session));
     try {
         take_all(session, shots);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "acquire/settings.h"
+#include "acquire/whole_frame.h"
 #include "app/capture_run.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -45,8 +46,8 @@ void run(const PreviewCommand& command) {
     const double exposure_us = acquire::set_exposure_checked(*bench.camera, command.exposure_us);
     acquire::Exposed exposed;
     try {
-        bench.camera->expose(Interrupt::requested);  // may still have the exposure of before
-        exposed = bench.camera->expose(Interrupt::requested);
+        expose_whole(*bench.camera, Interrupt::requested);  // may still have the exposure of before
+        exposed = expose_whole(*bench.camera, Interrupt::requested);
     } catch (const acquire::Stopped&) {
         throw CLI::RuntimeError(kExitInterrupted);
     }

@@ -60,12 +60,13 @@ class ScriptedCamera : public Camera {
             throw Stopped{};
         if (script_.frames == script_.lost_at)
             throw DeviceLost{"gone", "scripted", "", ""};
-        if (script_.frames == script_.incomplete_at)
-            throw IncompleteFrame{"incomplete", "scripted", "", ""};
         if (script_.frames == script_.stale_at)
             return last_;
         if (coming_us_.size() > 1)
             coming_us_.pop_front();
+        if (script_.frames >= script_.incomplete_at &&
+            script_.frames < script_.incomplete_at + script_.incomplete_frames)
+            throw IncompleteFrame{"incomplete", "scripted", "", ""};
         double exposure_us = coming_us_.front();
         if (exposure_us > 1000)
             exposure_us *= script_.true_ratio;

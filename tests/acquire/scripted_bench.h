@@ -17,7 +17,7 @@ struct Script {
     double true_ratio = 1;          // what exposures above 1000 us are multiplied by
     int lost_at = 0;                // DeviceLost once at this frame
     int tries_to_come_back = 0;     // opening fails so often after that
-    int incomplete_at = 0, stale_at = 0;
+    int incomplete_at = 0, incomplete_frames = 1, stale_at = 0;
     int drifts_from = 0;
     double drift_per_frame = 0;  // relative
     int stop_at = 0;             // Ctrl-C at this frame

@@ -182,6 +182,44 @@ TEST_F(Session, TakesIncompleteAndStaleFramesAgain) {
     EXPECT_EQ(capture::read_capture(folder_).events.size(), 2U);
 }
 
+// A step that finds the latency: 5 frames before the change, 5 after it.
+TEST_F(Session, TornFramesDoNotHideALateCamera) {
+    for (const int torn_at : {3, 6, 7, 8}) {
+        std::filesystem::remove_all(folder_);
+        Script script;
+        script.late_frames = 2;
+        script.incomplete_at = torn_at;
+        EXPECT_EQ(run(script).discarded_frames, 2) << torn_at;
+        expect_complete();
+    }
+}
+
+TEST_F(Session, TornFramesWhileACameraIsLateAreDroppedToo) {
+    Script script;
+    script.late_frames = 2;
+    script.incomplete_at = 11;  // the first after the change to the first shot's exposure
+    run(script);
+    expect_complete();
+}
+
+TEST_F(Session, GivesUpWhereNoFrameIsWhole) {
+    Script script;
+    script.incomplete_at = 30;
+    script.incomplete_frames = 7;
+    EXPECT_EQ(run(script).retaken, 7);
+    std::filesystem::remove_all(folder_);
+    script.frames = 0;
+    script.incomplete_frames = 8;
+    EXPECT_THAT(complaint(script), testing::HasSubstr("no whole new frame"));
+}
+
+TEST_F(Session, GoesOnWhenACameraIsLostBeforeTheFirstFrame) {
+    Script script;
+    script.lost_at = 4;
+    EXPECT_EQ(run(script).reconnects, 1);
+    expect_complete();
+}
+
 TEST_F(Session, GoesOnWhenACameraComesBack) {
     Script script;
     script.lost_at = 25;

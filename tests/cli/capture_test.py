@@ -207,20 +207,21 @@ class CaptureTest(ProgramTest):
                 time.sleep(0.05)
             line = self.refused(1, "preview", ADDRESS + "8")
             child.send_signal(signal.SIGINT)
-            self.assertEqual(child.wait(timeout=10), 130)
+            self.assertEqual(child.wait(timeout=60), 130)
         self.assertIn("another program controls it", line)
 
-    def test_ctrl_c_answers_within_a_second(self):
+    def test_ctrl_c_does_not_wait_for_a_frame(self):
         with served(ADDRESS + "9"):
-            for wait_s in (0.1, 0.6, 1.1):
-                child = subprocess.Popen([PROGRAM, "capture", plan(ADDRESS + "9", repeats=50), "-o", f"stopped{wait_s}"],
-                                         stderr=subprocess.PIPE, text=True)
+            exposures_us = [9.9e6, 1e7]
+            for wait_s in (0.1, 0.6, 1.1, 3.0):
+                child = subprocess.Popen([PROGRAM, "capture", plan(ADDRESS + "9", exposures_us=exposures_us), "-o",
+                                          f"stopped{wait_s}"], stderr=subprocess.PIPE, text=True)
                 time.sleep(wait_s)
                 start_s = time.monotonic()
                 child.send_signal(signal.SIGINT)
-                _, said = child.communicate(timeout=10)
-                taken_s = time.monotonic() - start_s
-                self.assertLess(taken_s, 1.0, said)
+                _, said = child.communicate(timeout=60)
+                # Less than half an exposure, however busy the machine is: it usually takes 0.1 s.
+                self.assertLess(time.monotonic() - start_s, 4.5, said)
                 self.assertIn(child.returncode, (130, -signal.SIGINT), said)
 
     def test_a_damaged_frame_is_taken_again(self):
