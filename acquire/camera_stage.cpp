@@ -32,17 +32,19 @@ class CameraStage : public Stage {
     explicit CameraStage(std::shared_ptr<Device> device)
         : device_(std::move(device)),
           counts_shots_(device_->has("LabShot")),
-          has_photometer_(device_->has("LabPhotometer")) {}
+          has_photometer_(device_->has("LabPhotometer")),
+          has_lamp_(device_->has("LabLampOn")) {}
 
     void arrange(const Shot& shot, const ShouldStop& should_stop) override;
-    std::optional<double> reading_lx() override;
+    Readings readings() override;
 
   private:
     void set(const char* feature, int value);
     void show(const char* subject);
+    double photometer_lx();
 
     std::shared_ptr<Device> device_;
-    bool counts_shots_, has_photometer_;
+    bool counts_shots_, has_photometer_, has_lamp_;
 };
 
 void CameraStage::set(const char* feature, int value) {
@@ -65,10 +67,11 @@ void CameraStage::arrange(const Shot& shot, const ShouldStop& should_stop) {
     if (should_stop())
         throw Stopped{};
     const bool is_dark = shot.kind == ShotKind::Dark;
-    checked(*device_, "switch the lamp", [&](GError** error) {
-        arv_device_set_boolean_feature_value(device_->device(), "LabLampOn", is_dark ? FALSE : TRUE,
-                                             error);
-    });
+    if (has_lamp_)
+        checked(*device_, "switch the lamp", [&](GError** error) {
+            arv_device_set_boolean_feature_value(device_->device(), "LabLampOn",
+                                                 is_dark ? FALSE : TRUE, error);
+        });
     if (shot.position.x >= 0) {
         set("LabFilterX", shot.position.x);
         set("LabFilterY", shot.position.y);
@@ -80,9 +83,14 @@ void CameraStage::arrange(const Shot& shot, const ShouldStop& should_stop) {
         set("LabShot", shot.number + 1);
 }
 
-std::optional<double> CameraStage::reading_lx() {
-    if (!has_photometer_)
-        return std::nullopt;
+Readings CameraStage::readings() {
+    Readings readings;
+    if (has_photometer_)
+        readings.illuminance_lx = photometer_lx();
+    return readings;
+}
+
+double CameraStage::photometer_lx() {
     return checked(*device_, "read the photometer", [&](GError** error) {
         return arv_device_get_float_feature_value(device_->device(), "LabPhotometer", error);
     });

@@ -30,6 +30,8 @@ std::string request_for(const capture::Shot& shot, const std::vector<capture::Ta
         case capture::ShotKind::Flat:
             return "put an evenly bright surface before the lens";
         case capture::ShotKind::Filter:
+            if (shot.position.x < 0)  // an instrument moves it
+                return "take the screen away, put an evenly bright surface behind the filter";
             return fmt::format(
                 "take the screen away, put an evenly bright surface behind the filter, filter to "
                 "column {}, row {}",
@@ -38,6 +40,8 @@ std::string request_for(const capture::Shot& shot, const std::vector<capture::Ta
             return "screen in its place, darken the lamp, leave the room as it is";
         case capture::ShotKind::Light:
         case capture::ShotKind::Reference:
+            if (shot.position.x < 0)
+                return "screen in its place, lamp in its place";
             return fmt::format("lamp on, filter to column {}, row {}", shot.position.x,
                                shot.position.y);
     }
@@ -56,8 +60,6 @@ class ManualStage : public Stage {
         ask_(request, should_stop);
         done_ = request;
     }
-
-    std::optional<double> reading_lx() override { return std::nullopt; }
 
   private:
     Ask ask_;

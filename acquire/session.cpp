@@ -104,7 +104,11 @@ void take(Session& session, const Shot& shot) {
     record.time_us = elapsed_us(session);
     record.camera_time_ns = exposed.camera_time_ns;
     record.temperature_c = session.bench.camera->temperature_c();
-    record.reading_lx = session.bench.stage->reading_lx();
+    const Readings readings = session.bench.stage->readings();
+    record.reading_lx = readings.illuminance_lx;
+    record.lamp_voltage_v = readings.lamp_voltage_v;
+    record.lamp_current_a = readings.lamp_current_a;
+    record.stage_mm = readings.stage_mm;
     session.checks.add(shot, exposed.frame);
     session.result.megabytes += static_cast<double>(exposed.frame.values.size() * 2) * 1e-6;
     ++session.result.frames;
@@ -220,7 +224,8 @@ capture::SessionRecord describe(const Session& session) {
             identity.vendor,
             identity.model,
             identity.serial,
-            session.result.discarded_frames};
+            session.result.discarded_frames,
+            session.bench.stage->instruments()};
 }
 
 }  // namespace

@@ -13,7 +13,14 @@
 
 namespace nearfield::acquire {
 
-/// Moves filter, lamp and targets, and reads the photometer.
+/// What instruments say while a frame is taken, as far as there are any.
+struct Readings {
+    std::optional<double> illuminance_lx;  // of the photometer
+    std::optional<double> lamp_voltage_v, lamp_current_a;
+    std::optional<glm::dvec2> stage_mm;  // read back
+};
+
+/// Moves filter, lamp and targets, and reads the instruments.
 class Stage {
   public:
     Stage() = default;
@@ -24,8 +31,9 @@ class Stage {
     /// Brings the bench to what a shot needs; returns when it is there. Nothing to do is quick.
     /// Throws Error where it cannot (stalled, out of range), DeviceLost, Stopped.
     virtual void arrange(const capture::Shot& shot, const ShouldStop& should_stop) = 0;
-    /// The photometer's illuminance now, where there is one.
-    virtual std::optional<double> reading_lx() = 0;
+    virtual Readings readings() { return {}; }
+    /// What people should find in the capture about the instruments: "luxmeter: MAKER,MODEL ...".
+    virtual std::vector<std::string> instruments() { return {}; }
 };
 
 /// Asks a person. `ask` shows a request and returns when it is done; throws Stopped.

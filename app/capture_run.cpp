@@ -2,6 +2,8 @@
 #include "app/capture_run.h"
 
 #include "acquire/aravis_camera.h"
+#include "acquire/instrument_stage.h"
+#include "acquire/v4l2_camera.h"
 #include "app/interrupt.h"
 #include "app/lab_bench.h"
 #include "app/progress.h"
@@ -122,8 +124,9 @@ CaptureWriter open_writer(const CaptureOptions& options) {
 
 acquire::Bench open_device(const std::string& device) {
     constexpr std::string_view kBench = "bench:";
-    return device.starts_with(kBench) ? open_lab_bench(device.substr(kBench.size()))
-                                      : acquire::open_aravis(device);
+    if (device.starts_with(kBench))
+        return open_lab_bench(device.substr(kBench.size()));
+    return device.starts_with("/dev/") ? acquire::open_v4l2(device) : acquire::open_aravis(device);
 }
 
 acquire::Bench open_bench(const Plan& plan) {
@@ -134,6 +137,8 @@ acquire::Bench open_bench(const Plan& plan) {
         throw Error{"no stage", "the plan's stage 'camera'",
                     "a camera that moves its bench (LabSubject ...)",
                     bench.camera->identity().model};
+    if (!plan.instruments.empty())
+        bench.stage = acquire::instrument_stage(plan, std::move(bench.stage), should_stop);
     return bench;
 }
 

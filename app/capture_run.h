@@ -21,11 +21,11 @@ struct CaptureOptions {
 /// Takes what the plan asks for, with progress and remarks on stderr. Throws as run_session().
 acquire::SessionResult run_capture(const CaptureOptions& options);
 
-/// A camera by its id, address or serial, or a virtual bench by "bench:FILE.json", with the stage
-/// that it has itself.
+/// A camera by its id, address or serial, a V4L2 one by its node ("/dev/video0"), or a virtual
+/// bench by "bench:FILE.json", with the stage that it has itself.
 acquire::Bench open_device(const std::string& device);
 
-/// The plan's camera and stage; a manual one asks on the terminal.
+/// The plan's camera, stage and instruments; a manual stage asks on the terminal.
 acquire::Bench open_bench(const capture::Plan& plan);
 
 }  // namespace nearfield::app

@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/lab_camera.h"
+#include "app/lab_devices.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/progress.h"
@@ -107,6 +108,34 @@ void add_serve(CLI::App& lab) {
     sub->callback([c] { run(*c); });
 }
 
+struct DevicesCommand {
+    std::string bench;
+    bool fast = false;
+    std::vector<std::string> command;
+};
+
+void add_devices_among(CLI::App& lab) {
+    auto c = std::make_shared<DevicesCommand>();
+    CLI::App* sub = add_command(
+        lab, "devices", "Runs a command among simulated cameras and instruments before a bench",
+        {"nearfield lab devices bench_near.json --fast -- nearfield devices",
+         "nearfield lab devices bench_near.json -- v4l2-ctl -d /dev/video0 --all"});
+    sub->add_option("bench", c->bench, "the bench, .json (docs/virtual_bench.md)")
+        ->required()
+        ->type_name("BENCH");
+    sub->add_flag("--fast", c->fast, "exposures take no time; the lab's time goes on as if");
+    sub->add_option("command", c->command,
+                    "behind --: the program and its arguments; it sees /dev/video0, a USB3 Vision "
+                    "camera, a luxmeter, a supply and the stage /dev/ttyUSB0 (docs/bench.md)")
+        ->required()
+        ->type_name("COMMAND");
+    sub->callback([c] {
+        const int code = run_among_devices(prepare(c->bench), c->fast, c->command);
+        if (code != 0)
+            throw CLI::RuntimeError(code);
+    });
+}
+
 struct TruthCommand {
     std::string bench, output;
 };
@@ -132,11 +161,14 @@ void add_truth(CLI::App& lab) {
 }  // namespace
 
 void add_lab(CLI::App& app) {
-    CLI::App* sub = add_command(app, "lab", "Simulates the laboratory: a camera on the network",
-                                {"nearfield lab serve bench_near.json",
-                                 "nearfield lab truth bench_near.json -o bench_near.truth.json"});
+    CLI::App* sub = add_command(
+        app, "lab", "Simulates the laboratory: a camera on the network, or devices of this machine",
+        {"nearfield lab serve bench_near.json",
+         "nearfield lab devices bench_near.json -- nearfield devices",
+         "nearfield lab truth bench_near.json -o bench_near.truth.json"});
     sub->require_subcommand(1);
     add_serve(*sub);
+    add_devices_among(*sub);
     add_truth(*sub);
 }
 

@@ -71,9 +71,9 @@ void add_preview(CLI::App& app) {
     CLI::App* sub =
         add_command(app, "preview", "Takes one frame with a camera and says what is in it",
                     {"nearfield preview 127.0.0.1 --exposure-us 2000 -o preview.png"});
-    sub->add_option(
-           "camera", c->camera.device,
-           "address, serial or id (nearfield devices), or bench:FILE.json; default: the only one")
+    sub->add_option("camera", c->camera.device,
+                    "address, serial or id (nearfield devices), /dev/videoN, or bench:FILE.json; "
+                    "default: the only one")
         ->type_name("CAMERA");
     add_number(*sub, "--exposure-us", c->exposure_us, 0.1, 600e6, "US", "exposure");
     add_number(*sub, "--gain-db", c->camera.gain_db, -60.0, 60.0, "DB", "gain");

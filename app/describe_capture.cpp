@@ -119,10 +119,13 @@ std::string capture_text(const Capture& capture, const std::optional<std::vector
                         format_text(capture), missing_shots(capture).size(),
                         fmt::join(count_by_kind(capture), ", "));
     text += temperature_text(capture);
-    for (const capture::SessionRecord& session : capture.sessions)
+    for (const capture::SessionRecord& session : capture.sessions) {
         text +=
             fmt::format("session {}  {} by {} with {} {} {}\n", session.number, session.start_utc,
                         session.program, session.vendor, session.model, session.serial);
+        for (const std::string& instrument : session.instruments)
+            text += fmt::format("           {}\n", instrument);
+    }
     for (const capture::EventRecord& event : capture.events)
         text += fmt::format("event      session {}, {:.1f} s: {}: {}\n", event.session,
                             static_cast<double>(event.time_us) * 1e-6, event.what, event.detail);

@@ -107,8 +107,10 @@ class LabStage : public acquire::Stage {
     void arrange(const capture::Shot& shot, const acquire::ShouldStop& /*should_stop*/) override {
         lab_->shot = arranged(shot, lab_->shot);
     }
-    std::optional<double> reading_lx() override {
-        return sample_data::photometer_lx(*lab_->prepared, lab_->shot);
+    acquire::Readings readings() override {
+        acquire::Readings readings;
+        readings.illuminance_lx = sample_data::photometer_lx(*lab_->prepared, lab_->shot);
+        return readings;
     }
 
   private:

@@ -43,6 +43,8 @@ LIBRARIES = {
     r"hwy/": ["formats/model"],
     r"OpenImageIO/": ["formats/photos"],
     r"arv\.h": ["acquire", "tests/sample_data", "tests/acquire"],
+    r"libusb-1.0/": ["acquire"],
+    r"umockdev\.h": ["sample_data/devices"],
     r"CLI/": ["app"],
     r"opencv2/": ["calibrate", "fit", "tests"],
     r"ceres/": ["calibrate", "tests/calibrate"],

@@ -12,6 +12,8 @@ packages=(
     libegl1 libgl1-mesa-dri
     # a display without a screen, and a mouse and keyboard for it: tests of the viewer
     xdotool xvfb
+    # simulated V4L2, USB and serial devices; the programs that see them too
+    libumockdev-dev umockdev usbutils v4l-utils
     # the reader of docs/read_luminaire.py, plots in reports
     gnuplot-nox python3-numpy python3-openimageio
 )

@@ -23,7 +23,7 @@
 
 namespace nearfield::capture {
 
-constexpr int kCaptureVersion = 1;
+constexpr int kCaptureVersion = 2;  // 2: instruments and what they read
 
 /// How values follow light: of cameras in DN proportional to it, or of photographs unknown.
 enum class Response { Linear, Unknown };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "formats/capture/board.h"
+#include "formats/capture/instruments.h"
 #include "formats/files/json_field.h"
 
 #include <glm/glm.hpp>
@@ -14,7 +15,7 @@
 
 namespace nearfield::capture {
 
-constexpr int kPlanVersion = 1;
+constexpr int kPlanVersion = 2;  // 2: instruments, camera.controls
 
 /// The camera and how it is set; the same for all shots but for the exposure.
 struct CameraPlan {
@@ -24,11 +25,12 @@ struct CameraPlan {
     double gain_db = 0;
     int packet_size_bytes = 0;  // 0: the largest that arrives
     bool is_byte_swapped = false;
+    std::map<std::string, int> controls;  // of V4L2, by name as v4l2-ctl lists them: "gain"
     glm::dmat3 rgb_from_raw{1.0};  // linear Rec.709 from white-balanced raw colors, of a data sheet
 };
 
-/// Who moves filter, lamp and targets: a person who is asked, or the camera's own features
-/// (LabPosition..., as the virtual bench has them).
+/// Who moves filter, lamp and targets, as far as no instrument does: a person who is asked, or the
+/// camera's own features (LabPosition..., as the virtual bench has them).
 enum class StageKind { Manual, Camera };
 
 /// Exposures of every position, ascending. Where `is_auto` they are found by metering.
@@ -68,6 +70,7 @@ struct ScreenPlan {
 struct Plan {
     CameraPlan camera;
     StageKind stage = StageKind::Manual;
+    InstrumentsPlan instruments;
     glm::ivec2 grid{0};  // filter positions, columns x rows; 1 x 1: no filter; 0: targets alone
     glm::dvec2 pitch_m{0};
     std::string basis;
@@ -86,7 +89,7 @@ struct Plan {
     int drift_every = 0;            // light positions between two looks at the reference; 0: never
     double drift_limit_rel = 0.01;  // stops where the lamp changed by more
     double ratio_limit_rel = 0.02;  // stops where exposures are in another ratio than asked for
-    double settle_s = 0;            // waited after every move
+    double settle_s = 0;            // waited after every move of an instrument
 };
 
 enum class ShotKind { Target, Flat, Filter, Dark, Light, Reference };

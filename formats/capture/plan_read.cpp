@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace nearfield::capture {
 namespace {
@@ -16,9 +17,17 @@ int optional_integer(
     return object.has(key) ? object.at(key).integer(least, most) : value;
 }
 
+std::map<std::string, int> controls_from(const JsonField& field) {
+    std::map<std::string, int> controls;
+    for (const std::string& name : field.keys())
+        controls[name] = field.at(name).integer(std::numeric_limits<int>::min(),
+                                                std::numeric_limits<int>::max());
+    return controls;
+}
+
 CameraPlan camera_from(const JsonField& field) {
     field.only({"device", "pixel_format", "region_px", "gain_db", "packet_size_bytes", "byte_swap",
-                "rgb_from_raw"});
+                "controls", "rgb_from_raw"});
     CameraPlan camera;
     if (field.has("device"))
         camera.device = field.at("device").text();
@@ -34,6 +43,8 @@ CameraPlan camera_from(const JsonField& field) {
     camera.packet_size_bytes = optional_integer(field, "packet_size_bytes", 0, 0, 65535);
     if (field.has("byte_swap"))
         camera.is_byte_swapped = field.at("byte_swap").boolean();
+    if (field.has("controls"))
+        camera.controls = controls_from(field.at("controls"));
     if (field.has("rgb_from_raw")) {
         const std::vector<JsonField> numbers = field.at("rgb_from_raw").elements(9);
         for (int k = 0; k < 9; ++k)
@@ -149,16 +160,18 @@ void check_exposures(const Plan& plan, const std::string& where) {
 
 Plan plan_from(const JsonField& document) {
     const int version = document.at("nearfield_plan").integer(0, 1 << 30);
-    if (version != kPlanVersion)
+    if (version < 1 || version > kPlanVersion)
         throw Error{"cannot read plan", document.where() + ".nearfield_plan",
-                    fmt::format("version {}", kPlanVersion), fmt::format("{}", version)};
-    document.only({"nearfield_plan", "camera", "stage", "filter", "filter_views", "exposures_us",
-                   "bracket", "repeats", "darks_per_exposure", "flats", "targets", "screen",
-                   "photometer", "drift", "exposure_ratio_limit_rel", "settle_s"});
+                    fmt::format("version 1 ... {}", kPlanVersion), fmt::format("{}", version)};
+    document.only({"nearfield_plan", "camera", "stage", "instruments", "filter", "filter_views",
+                   "exposures_us", "bracket", "repeats", "darks_per_exposure", "flats", "targets",
+                   "screen", "photometer", "drift", "exposure_ratio_limit_rel", "settle_s"});
     Plan plan;
     if (document.has("camera"))
         plan.camera = camera_from(document.at("camera"));
     plan.stage = meaning_of(kStages, document.at("stage"));
+    if (document.has("instruments"))
+        plan.instruments = instruments_from(document.at("instruments"));
     if (document.has("filter"))
         read_filter(document.at("filter"), plan);
     plan.bracket = bracket_from(document);

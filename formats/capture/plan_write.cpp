@@ -15,6 +15,8 @@ Json camera_json(const CameraPlan& camera) {
     if (camera.region_size_px.x > 0)
         json["region_px"] = {camera.region_min_px.x, camera.region_min_px.y,
                              camera.region_size_px.x, camera.region_size_px.y};
+    if (!camera.controls.empty())
+        json["controls"] = camera.controls;
     if (camera.rgb_from_raw != glm::dmat3(1.0)) {
         Json numbers = Json::array();
         for (int k = 0; k < 9; ++k)
@@ -81,6 +83,8 @@ Json json_of(const Plan& plan) {
     Json document = {{"nearfield_plan", kPlanVersion},
                      {"camera", camera_json(plan.camera)},
                      {"stage", word_for(kStages, plan.stage)}};
+    if (!plan.instruments.empty())
+        document["instruments"] = json_of(plan.instruments);
     if (plan.grid.x > 0)
         document["filter"] = filter_json(plan);
     if (!plan.filter_views.positions.empty())

@@ -63,7 +63,17 @@ Json json_of(const SessionRecord& session) {
             {"vendor", session.vendor},
             {"model", session.model},
             {"serial", session.serial},
-            {"discarded_frames", session.discarded_frames}};
+            {"discarded_frames", session.discarded_frames},
+            {"instruments", session.instruments}};
+}
+
+// Captures of version 1 have none.
+std::vector<std::string> instruments_of(const JsonField& line) {
+    std::vector<std::string> instruments;
+    if (line.has("instruments"))
+        for (const JsonField& instrument : line.at("instruments").elements())
+            instruments.push_back(instrument.text());
+    return instruments;
 }
 
 SessionRecord session_from(const JsonField& line) {
@@ -73,7 +83,8 @@ SessionRecord session_from(const JsonField& line) {
             line.at("vendor").text(),
             line.at("model").text(),
             line.at("serial").text(),
-            line.at("discarded_frames").integer(0, kMostNumber)};
+            line.at("discarded_frames").integer(0, kMostNumber),
+            instruments_of(line)};
 }
 
 Json json_of(const FrameRecord& frame) {
@@ -96,6 +107,12 @@ Json json_of(const FrameRecord& frame) {
         line["temperature_c"] = *frame.temperature_c;
     if (frame.reading_lx)
         line["reading_lx"] = *frame.reading_lx;
+    if (frame.lamp_voltage_v)
+        line["lamp_voltage_v"] = *frame.lamp_voltage_v;
+    if (frame.lamp_current_a)
+        line["lamp_current_a"] = *frame.lamp_current_a;
+    if (frame.stage_mm)
+        line["stage_mm"] = {frame.stage_mm->x, frame.stage_mm->y};
     if (!frame.source.empty())
         line["source"] = frame.source;
     return line;
@@ -120,6 +137,12 @@ FrameRecord frame_from(const JsonField& line) {
     frame.share_saturated = line.at("share_saturated").number();
     frame.temperature_c = number_if(line, "temperature_c");
     frame.reading_lx = number_if(line, "reading_lx");
+    frame.lamp_voltage_v = number_if(line, "lamp_voltage_v");
+    frame.lamp_current_a = number_if(line, "lamp_current_a");
+    if (line.has("stage_mm")) {
+        const std::vector<double> stage = line.at("stage_mm").numbers(2);
+        frame.stage_mm = glm::dvec2(stage[0], stage[1]);
+    }
     if (line.has("source"))
         frame.source = line.at("source").text();
     return frame;

@@ -19,6 +19,7 @@ struct SessionRecord {
     std::string vendor, model, serial;
     int discarded_frames =
         0;  // taken and dropped after a change of exposure, for a camera that is late
+    std::vector<std::string> instruments = {};  // "luxmeter: MAKER,MODEL,SERIAL,VERSION"
 };
 
 /// A frame that is whole on disk.
@@ -35,6 +36,8 @@ struct FrameRecord {
     std::int64_t time_us = 0;  // monotonic, since the session's start
     std::uint64_t camera_time_ns = 0;
     std::optional<double> temperature_c, reading_lx;
+    std::optional<double> lamp_voltage_v, lamp_current_a;  // measured by the supply
+    std::optional<glm::dvec2> stage_mm;                    // the stage's position, read back
     double mean_dn = 0, share_saturated = 0;
     std::string source;  // the photograph that it was made from; empty: a camera's frame
 };

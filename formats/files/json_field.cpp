@@ -32,6 +32,15 @@ void JsonField::only(const std::vector<std::string>& known) const {
                         "'" + key + "'"};
 }
 
+std::vector<std::string> JsonField::keys() const {
+    if (!value_->is_object())
+        fail("an object");
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : value_->items())
+        keys.push_back(key);
+    return keys;
+}
+
 JsonField JsonField::at(const std::string& key) const {
     if (!value_->is_object())
         fail("an object");

@@ -23,6 +23,8 @@ class JsonField {
     /// Throws Error where an object has a key that is not among the known ones: a slip of the pen.
     void only(const std::vector<std::string>& known) const;
     JsonField at(const std::string& key) const;
+    /// An object's keys.
+    std::vector<std::string> keys() const;
     bool is_list() const;
     std::vector<JsonField> elements() const;
     std::vector<JsonField> elements(std::size_t count) const;

@@ -137,7 +137,7 @@ struct Session::Kept {
     void use_scene(const Scene& scene, const std::vector<shared::Brdf>& brdfs) {
         if (!scene_buffers || !is_same_geometry(scene, geometry)) {
             scene_buffers = upload_scene(device, scene);
-            geometry = {scene.materials, scene.meshes, scene.instances, {}, {}, {}};
+            geometry = {scene.materials, scene.meshes, scene.instances, {}, {}, {}, {}};
         }
         scene_buffers->materials = upload_materials(device, brdfs);
     }

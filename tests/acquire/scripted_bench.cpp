@@ -93,7 +93,6 @@ class ScriptedStage : public Stage {
             throw Error{"the stage is stalled", "scripted", "", ""};
         lab_->shot = shot;
     }
-    std::optional<double> reading_lx() override { return std::nullopt; }
 
   private:
     Script& script_;

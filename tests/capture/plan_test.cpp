@@ -97,7 +97,7 @@ TEST(Plan, RefusesWhatItCannotMean) {
                 testing::HasSubstr("filter.columns"));
     EXPECT_THAT(complaint(with("\"camera\",", "\"robot\",")),
                 testing::HasSubstr("one of manual, camera"));
-    EXPECT_THAT(complaint(with("nearfield_plan\": 1", "nearfield_plan\": 2")),
+    EXPECT_THAT(complaint(with("nearfield_plan\": 1", "nearfield_plan\": 3")),
                 testing::HasSubstr("version 1"));
     EXPECT_THAT(complaint(with("\"repeats\"", "\"repeat\"")), testing::HasSubstr("'repeat'"));
     EXPECT_THAT(complaint(with("0.016, 0.016", "16, 16")), testing::HasSubstr("filter.pitch_m[0]"));
