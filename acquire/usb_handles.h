@@ -6,6 +6,7 @@
 
 #include <libusb-1.0/libusb.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -29,6 +30,11 @@ using UsbContext = std::unique_ptr<libusb_context, ExitUsb>;
 using UsbHandle = std::unique_ptr<libusb_device_handle, CloseUsb>;
 using UsbConfiguration = std::unique_ptr<libusb_config_descriptor, FreeConfiguration>;
 using UsbList = std::unique_ptr<libusb_device*, FreeList>;
+
+/// Where an instrument's messages go and come from.
+struct UsbtmcEndpoints {
+    std::uint8_t interface = 0, in = 0, out = 0;
+};
 
 /// Throws where a call returned an error: DeviceLost where the device is gone.
 inline void check_usb(int result, const std::string& what, const std::string& where) {

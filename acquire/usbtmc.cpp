@@ -27,11 +27,7 @@ struct Confused {
     std::string why;
 };
 
-struct Endpoints {
-    std::uint8_t interface = 0, in = 0, out = 0;
-};
-
-std::optional<Endpoints> endpoints_of(libusb_device* device) {
+std::optional<UsbtmcEndpoints> endpoints_of(libusb_device* device) {
     libusb_config_descriptor* raw = nullptr;
     if (libusb_get_active_config_descriptor(device, &raw) != 0)
         return std::nullopt;
@@ -41,7 +37,7 @@ std::optional<Endpoints> endpoints_of(libusb_device* device) {
         if (interface.bInterfaceClass != kUsbtmcClass ||
             interface.bInterfaceSubClass != kUsbtmcSubclass)
             continue;
-        Endpoints found{interface.bInterfaceNumber, 0, 0};
+        UsbtmcEndpoints found{interface.bInterfaceNumber, 0, 0};
         for (int j = 0; j < interface.bNumEndpoints; ++j) {
             const libusb_endpoint_descriptor& endpoint = interface.endpoint[j];
             if ((endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK)
@@ -101,7 +97,7 @@ void for_each_instrument(libusb_context* context, const Use& use) {
 struct Usbtmc::Handle {
     UsbContext context = usb_context();
     UsbHandle device;  // closed first
-    Endpoints endpoints;
+    UsbtmcEndpoints endpoints;
 };
 
 std::vector<FoundInstrument> find_instruments() {

@@ -155,7 +155,7 @@ std::vector<std::string> V4l2Device::format_names() const {
     v4l2_fmtdesc description{};
     description.type = kCapture;
     for (; call(VIDIOC_ENUM_FMT, &description) == 0; ++description.index)
-        names.push_back("'" + name_of_fourcc(description.pixelformat) + "'");
+        names.push_back(fmt::format("'{}'", name_of_fourcc(description.pixelformat)));
     return names;
 }
 
@@ -177,7 +177,7 @@ glm::ivec2 V4l2Device::largest(std::uint32_t fourcc) const {
     if (largest.x == 0)
         throw Error{"the camera has no such pixel format", path_,
                     fmt::format("one of {}", fmt::join(format_names(), ", ")),
-                    "'" + name_of_fourcc(fourcc) + "'"};
+                    fmt::format("'{}'", name_of_fourcc(fourcc))};
     return largest;
 }
 

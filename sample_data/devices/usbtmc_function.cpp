@@ -107,9 +107,12 @@ bool Instrument::take(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> b
 
 // One message in, of the answer as much as was asked for.
 std::vector<std::uint8_t> Instrument::next_message() {
+    const bool is_to_another = take_one(faults.wrong_tags);
+    if (is_to_another)
+        answer_ = "0\n";
     const std::size_t size =
         std::min({answer_.size(), asked_bytes_, faults.splits ? kSplitMessage : answer_.size()});
-    const std::uint8_t tag = take_one(faults.wrong_tags) ? tag_ ^ 0x55U : tag_;
+    const std::uint8_t tag = is_to_another ? tag_ ^ 0x55U : tag_;
     std::vector<std::uint8_t> bytes{kRequestIn, tag, static_cast<std::uint8_t>(~tag), 0};
     append(bytes, size, 4);
     append(bytes, size == answer_.size() ? kEndOfMessage : 0, 4);
