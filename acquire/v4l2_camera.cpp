@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace nearfield::acquire {
 namespace {
