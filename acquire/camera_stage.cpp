@@ -19,6 +19,8 @@ const char* subject_of(ShotKind kind) {
             return "Flat";
         case ShotKind::Filter:
             return "Filter";
+        case ShotKind::Blocked:
+            return "Blocked";
         case ShotKind::Dark:
         case ShotKind::Light:
         case ShotKind::Reference:

@@ -38,6 +38,8 @@ std::string request_for(const capture::Shot& shot, const std::vector<capture::Ta
                 shot.position.x, shot.position.y);
         case capture::ShotKind::Dark:
             return "screen in its place, darken the lamp, leave the room as it is";
+        case capture::ShotKind::Blocked:
+            return "lamp on, an opaque plate instead of the filter";
         case capture::ShotKind::Light:
         case capture::ShotKind::Reference:
             if (shot.position.x < 0)

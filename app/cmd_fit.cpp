@@ -41,7 +41,6 @@ Provenance provenance_of(const FitCommand& command, const fit::CaptureFit& resul
                                  slab.s_max_m.y)},
         {"lambda", fmt::format("{:g}", result.lambda)},
         {"model-error-rel", fmt::format("{:g}", command.options.model_error_rel)},
-        {"replicates", fmt::format("{}", command.options.replicates)},
         {"seed", fmt::format("{}", command.options.seed)}};
     provenance.inputs = {describe_input(command.capture + "/capture.json"),
                          describe_input(command.capture + "/log.jsonl"),
@@ -55,6 +54,15 @@ Provenance provenance_of(const FitCommand& command, const fit::CaptureFit& resul
     return provenance;
 }
 
+std::string beside_filter(const fit::CaptureFit& result) {
+    if (result.beside_filter.empty())
+        return "light beside the filter is not known: plan frames with the filter blocked\n";
+    std::string line = "light beside the filter, taken off:";
+    for (const fit::BesideFilter& channel : result.beside_filter)
+        line += fmt::format(" {:.3g} +- {:.1g} lx", channel.mean_lx, channel.sigma_lx);
+    return line + "\n";
+}
+
 std::string summary(const fit::CaptureFit& result) {
     const Slab& slab = result.lightfield.slabs.front();
     const double flux_lm = model::luminance(model::flux(result.lightfield));
@@ -64,27 +72,38 @@ std::string summary(const fit::CaptureFit& result) {
         "flux {:.5g} lm +- {:.2g} independent, +- {:.2g} % common; {:.2g} % of the light beside "
         "the "
         "extent\n"
+        "{}"
         "merge {:.1f} s, smoothness {:.1f} s, solve {:.1f} s\n",
         result.positions, slab.texels.x, slab.texels.y, slab.s_max_m.x - slab.s_min_m.x,
         slab.s_max_m.y - slab.s_min_m.y, 1e3 * result.resolution_m, result.lambda,
         result.report.reduced_chi_square(), result.report.kkt_worst, flux_lm,
         model::flux_sigma_y(result.lightfield), 100 * result.lightfield.scale_sigma_rel,
-        100 * result.outside_share, result.merge_s, result.smoothness_s, result.solve_s);
+        100 * result.outside_share, beside_filter(result), result.merge_s, result.smoothness_s,
+        result.solve_s);
 }
 
-// Exit 3 where what was measured otherwise is further off than the user allows.
-void check_flux(const FitCommand& command, const fit::CaptureFit& result) {
+// Whether what was measured otherwise is as near as the user wants it.
+bool has_right_flux(const FitCommand& command, const fit::CaptureFit& result) {
     if (!command.flux_lm)
-        return;
+        return true;
     const double flux_lm = model::luminance(model::flux(result.lightfield));
     const double off_rel = flux_lm / *command.flux_lm - 1;
     say(fmt::format("flux {:.5g} lm is {:+.2f} % off the {:.5g} lm that were measured otherwise\n",
                     flux_lm, 100 * off_rel, *command.flux_lm));
-    if (std::abs(off_rel) > command.flux_limit_rel) {
-        say(fmt::format("{}: not written: more than --flux-limit-rel {:g}\n", command.output.path,
-                        command.flux_limit_rel));
-        throw CLI::RuntimeError(3);
-    }
+    if (std::abs(off_rel) <= command.flux_limit_rel)
+        return true;
+    say(fmt::format("{}: not written: more than --flux-limit-rel {:g}\n", command.output.path,
+                    command.flux_limit_rel));
+    return false;
+}
+
+void write_report(const FitCommand& command, const fit::CaptureFit& result, const RunRecord& run) {
+    if (command.report.empty())
+        return;
+    write_page(
+        fit_page(result, fmt::format("nearfield fit {} --rig {} -o {}\n{}, {}", command.capture,
+                                     command.rig, command.output.path, machine(), cost(run))),
+        command.report);
 }
 
 void run_fit(FitCommand& command) {
@@ -107,15 +126,12 @@ void run_fit(FitCommand& command) {
         fit::fit_capture({command.capture, capture, rig, maps}, command.options);
     line.finish();
     say(summary(result));
-    check_flux(command, result);
     result.lightfield.provenance = provenance_of(command, result);
     const RunRecord run = record_run(start_s);
+    write_report(command, result, run);
+    if (!has_right_flux(command, result))
+        throw CLI::RuntimeError(3);
     write_lightfield(result.lightfield, command.output.stored(run), command.output.path);
-    if (!command.report.empty())
-        write_page(
-            fit_page(result, fmt::format("nearfield fit {} --rig {} -o {}\n{}, {}", command.capture,
-                                         command.rig, command.output.path, machine(), cost(run))),
-            command.report);
     say(fmt::format("{}: {}\n", command.output.path, cost(run)));
 }
 

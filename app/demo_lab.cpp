@@ -6,6 +6,7 @@
 #include "app/fit_page.h"
 #include "app/lab_camera.h"
 #include "app/output.h"
+#include "fit/solve_capture.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/error.h"
 #include "formats/files/read_file.h"
@@ -26,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLuminaireName = "lamp.luminaire.exr";
-const double kModelErrorRel = fit::CaptureFitOptions{}.model_error_rel;
 
 std::string in_folder(const LabDemoOptions& options, const std::string& name) {
     return (fs::path(options.folder) / name).string();
@@ -101,21 +101,27 @@ void calibrate_stage(const LabDemoOptions& options,
     });
 }
 
+fit::CaptureFitOptions fit_options_of(const LabDemoOptions& options, const DemoProgress& progress) {
+    fit::CaptureFitOptions fit_options;
+    if (options.quick)
+        fit_options.texels = glm::ivec2(128, 80);
+    fit_options.spool_folder = options.folder;
+    fit_options.progress = [&progress](double fraction, const std::string&) {
+        progress("fit", fraction);
+    };
+    return fit_options;
+}
+
 void fit_stage(const LabDemoOptions& options,
+               const fit::CaptureFitOptions& fit_options,
                const capture::Capture& capture,
-               const DemoProgress& progress,
+               std::optional<fit::RectifiedCapture>& rectified,
                LabDemoResult& result) {
     take_stage(result, "fit", [&] {
-        fit::CaptureFitOptions fit_options;
-        if (options.quick)
-            fit_options.texels = glm::ivec2(128, 80);
-        fit_options.spool_folder = options.folder;
-        fit_options.progress = [&](double fraction, const std::string&) {
-            progress("fit", fraction);
-        };
-        result.fit = fit::fit_capture({in_folder(options, "capture"), capture,
-                                       result.calibration.rig, result.calibration.maps},
-                                      fit_options);
+        rectified.emplace(fit::rectify_capture({in_folder(options, "capture"), capture,
+                                                result.calibration.rig, result.calibration.maps},
+                                               fit_options));
+        result.fit = fit::solve_capture(*rectified, rectified->optics, fit_options);
         result.fit.lightfield.provenance.program = program_version();
         result.fit.lightfield.provenance.command = "demo --lab";
         write_lightfield(result.fit.lightfield, std::nullopt,
@@ -177,12 +183,36 @@ report::Section closure_section(const Closure& closure) {
         {"the same against the formula", percent(closure.irradiance_rms_truth)},
         {"receivers within three sigma of the noise-free fit", percent(closure.coverage_3sigma)},
         {"total flux against the formula", percent(closure.flux_rel)},
+        {"the noise-free fit's illuminance against the formula, RMS",
+         percent(closure.basis_rms_truth)},
         {"the noise-free fit's flux against the formula", percent(closure.noise_free_flux_rel)},
+        {"cut-off line 25 m away against the formula's, at most",
+         fmt::format("{:.3f} degrees", closure.cutoff_deg)},
+        {"the noise-free fit's", fmt::format("{:.3f} degrees", closure.cutoff_basis_deg)},
         {"distance of the planes", percent(closure.delta_rel)},
         {"the lamp's light when it was measured, over its nominal",
          fmt::format("{:.4f}", closure.lamp_factor)}};
     section.tables.push_back(std::move(table));
+    report::Table budget{
+        "Error budget: each source by itself, all else as it really was, against "
+        "the noise-free fit",
+        {"source", "illuminance, RMS", "mean", "flux"},
+        {}};
+    for (const ErrorSource& source : closure.budget)
+        budget.rows.push_back({source.what, percent(source.irradiance_rms),
+                               percent(source.irradiance_bias), percent(source.flux_rel)});
+    section.tables.push_back(std::move(budget));
     return section;
+}
+
+Json budget_json(const Closure& closure) {
+    Json budget = Json::array();
+    for (const ErrorSource& source : closure.budget)
+        budget.push_back({{"source", source.what},
+                          {"irradiance_rms", source.irradiance_rms},
+                          {"irradiance_bias", source.irradiance_bias},
+                          {"flux_rel", source.flux_rel}});
+    return budget;
 }
 
 Json closure_json(const Closure& closure) {
@@ -192,6 +222,10 @@ Json closure_json(const Closure& closure) {
             {"delta_rel", closure.delta_rel},
             {"coverage_3sigma", closure.coverage_3sigma},
             {"noise_free_flux_rel", closure.noise_free_flux_rel},
+            {"basis_rms_truth", closure.basis_rms_truth},
+            {"cutoff_deg", closure.cutoff_deg},
+            {"cutoff_basis_deg", closure.cutoff_basis_deg},
+            {"receivers", closure.receivers.size()},
             {"lamp_factor", closure.lamp_factor}};
 }
 
@@ -206,13 +240,17 @@ LabDemoResult run_lab_demo(const LabDemoOptions& options, const DemoProgress& pr
     capture_bench(options, progress, result);
     const capture::Capture capture = capture::read_capture(in_folder(options, "capture"));
     calibrate_stage(options, capture, progress, result);
-    fit_stage(options, capture, progress, result);
+    const fit::CaptureFitOptions fit_options = fit_options_of(options, progress);
+    std::optional<fit::RectifiedCapture> rectified;
+    fit_stage(options, fit_options, capture, rectified, result);
     pack_and_render(options, progress, result);
     take_stage(result, "compare with the truth", [&] {
         progress("compare with the truth", 0.0);
+        const rig::Rig& rig = result.calibration.rig;
+        const LabTruth truth =
+            lab_truth(sample_data::read_bench(options.bench), rig, reference_time_s(capture));
         result.closure =
-            closure_of(sample_data::read_bench(options.bench), reference_time_s(capture),
-                       result.calibration.rig, result.fit, kModelErrorRel);
+            closure_of(truth, rig.planes->delta_m, *rectified, fit_options, result.fit);
         return fmt::format("{:.3g} % RMS", 100 * result.closure.irradiance_rms);
     });
     return result;
@@ -248,6 +286,7 @@ void write_lab_report(const LabDemoOptions& options,
                                   {"error_estimate", stage.error_estimate}});
     }
     json["closure"] = closure_json(result.closure);
+    json["error_budget"] = budget_json(result.closure);
     page.sections = {picture,
                      closure_section(result.closure),
                      {"Stages", {}, {}, {table}, {}},

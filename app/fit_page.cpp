@@ -195,6 +195,12 @@ Section facts_section(const fit::CaptureFit& fit) {
     row("positions", fmt::format("{}, {} missing", fit.positions, fit.missing_positions));
     row("saturated in all exposures", fmt::format("{:.3g} % of pixels", 100 * fit.saturated_share));
     row("light beside the extent", fmt::format("{:.2g} %", 100 * fit.outside_share));
+    if (fit.beside_filter.empty())
+        row("light beside the filter", "not measured, not taken off");
+    for (const fit::BesideFilter& channel : fit.beside_filter)
+        row("light beside the filter, taken off (as through a filter of peak 1)",
+            fmt::format("{:.3g} +- {:.1g} lx; chi-square of its picture {:.2f}", channel.mean_lx,
+                        channel.sigma_lx, channel.chi_square));
     row("the lamp's drift, taken off", fmt::format("up to {:.2g} %", 100 * fit.drift_rel));
     row("time", fmt::format("merge {:.1f} s, smoothness {:.1f} s, solve {:.1f} s", fit.merge_s,
                             fit.smoothness_s, fit.solve_s));

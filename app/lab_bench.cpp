@@ -31,6 +31,8 @@ sample_data::Subject subject_of(ShotKind kind) {
             return sample_data::Subject::Flat;
         case ShotKind::Filter:
             return sample_data::Subject::Filter;
+        case ShotKind::Blocked:
+            return sample_data::Subject::Blocked;
         case ShotKind::Dark:
         case ShotKind::Light:
         case ShotKind::Reference:

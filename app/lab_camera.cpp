@@ -16,6 +16,8 @@ sample_data::Subject subject_of(gige::Subject subject) {
             return sample_data::Subject::Target;
         case gige::Subject::Filter:
             return sample_data::Subject::Filter;
+        case gige::Subject::Blocked:
+            return sample_data::Subject::Blocked;
         case gige::Subject::Cap:
             return sample_data::Subject::Cap;
         case gige::Subject::Position:

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/lab_closure.h"
 
-#include "formats/files/error.h"
+#include "app/cutoff_line.h"
+#include "fit/solve_capture.h"
 #include "formats/model/luminaire.h"
-#include "formats/model/profile.h"
-#include "sample_data/bench/lens_light.h"
-#include "sample_data/headlight.h"
 
 #include <tbb/parallel_for.h>
 
@@ -14,123 +12,6 @@
 
 namespace nearfield::app {
 namespace {
-
-
-double value_at_center(const Profile& profile) {
-    return model::eval(profile, 0.0);
-}
-
-// The real bench in the rig's slab frame.
-struct RealBench {
-    const sample_data::Bench& bench;
-    sample_data::Places places;
-    Rigid bench_from_slab;
-
-    glm::dvec3 filter_center_slab(std::size_t position) const {
-        const glm::dvec3 at_bench =
-            apply(places.bench_from_filter, glm::dvec3(places.position_m[position], 0.0));
-        return apply(inverse(bench_from_slab), at_bench);
-    }
-};
-
-// Optics as they really are.
-fit::Optics real_optics(const RealBench& real) {
-    fit::Optics optics;
-    for (std::size_t k = 0; k < real.places.position_m.size(); ++k)
-        optics.position_m.push_back(real.filter_center_slab(k));
-    Profile profile = real.bench.filter.profile;
-    const double peak = value_at_center(profile);
-    for (std::array<double, 3>& cell : profile.cells)
-        for (double& coefficient : cell)
-            coefficient /= peak;
-    optics.filter_x = optics.filter_y = profile;
-    optics.filter_pitch_m = real.bench.filter.pitch_m;
-    const glm::dvec3 normal = glm::transpose(real.bench_from_slab.rotation) *
-                              real.places.bench_from_filter.rotation * glm::dvec3(0, 0, 1);
-    optics.filter_slope = {-normal.x / normal.z, -normal.y / normal.z};
-    return optics;
-}
-
-// Luminance through the filter over its transmission: what a filter of peak 1 would let through.
-sample_data::SeenColors luminance_through(const sample_data::BenchFilter& filter) {
-    const double peak = value_at_center(filter.profile);
-    glm::dvec3 weights(0.0);
-    for (int c = 0; c < 3; ++c)
-        weights[c] =
-            kLuminanceRgb[static_cast<std::size_t>(c)] / (filter.transmission[c] * peak * peak);
-    return {weights};
-}
-
-// Noise-free measurements of rows of texels: illuminance at their centers behind every position.
-fit::TileInput noise_free_tile(const RealBench& real,
-                               const sample_data::LensLight& light,
-                               const Slab& planes,
-                               double model_error_rel,
-                               fit::TileRange rows) {
-    const auto width = static_cast<std::size_t>(planes.texels.x);
-    const std::size_t count = width * static_cast<std::size_t>(rows.row_count);
-    const std::size_t positions = real.places.position_m.size();
-    fit::TileInput tile;
-    tile.value.resize(positions * count);
-    tile.variance.resize(positions * count);
-    const glm::dvec3 to_lamp = real.bench_from_slab.rotation * glm::dvec3(0, 0, -1);
-    const sample_data::SeenColors colors = luminance_through(real.bench.filter);
-    tbb::parallel_for(0, rows.row_count, [&](int row) {
-        std::vector<glm::dvec3> points;
-        points.reserve(width);
-        for (int i = 0; i < planes.texels.x; ++i) {
-            const glm::dvec2 s_m =
-                planes.s_min_m + (glm::dvec2(i, rows.first_row + row) + 0.5) * planes.texel_m();
-            points.push_back(apply(real.bench_from_slab, glm::dvec3(s_m, 0.0)));
-        }
-        const sample_data::LineLight line =
-            line_light(light, points, to_lamp, colors, static_cast<int>(positions));
-        for (std::size_t i = 0; i < width; ++i) {
-            const std::size_t t = static_cast<std::size_t>(row) * width + i;
-            double brightest = 0;
-            for (std::size_t k = 0; k < positions; ++k)
-                brightest = std::max(brightest, line.positions[k * width + i]);
-            const double error = std::max(model_error_rel, 1e-6) * std::max(brightest, 1e-6);
-            for (std::size_t k = 0; k < positions; ++k) {
-                tile.value[k * count + t] = static_cast<float>(line.positions[k * width + i]);
-                tile.variance[k * count + t] = static_cast<float>(error * error);
-            }
-        }
-    });
-    return tile;
-}
-
-LightField noise_free_fit(const RealBench& real,
-                          const fit::CaptureFit& fit,
-                          double model_error_rel) {
-    LightField lightfield = fit.lightfield;
-    Slab& slab = lightfield.slabs.front();
-    slab.channels = 1;
-    slab.sigma.clear();
-    slab.coeffs.assign(static_cast<std::size_t>(slab.image_count()) * slab.texel_count(), 0.0F);
-    const sample_data::LensLight light =
-        make_lens_light(real.bench, real.places, sample_data::make_ray_lamp(real.bench.lamp),
-                        real.bench.delta_m, real.bench.accuracy.lens_step);
-    const fit::Design design = fit::make_design(slab, real_optics(real));
-    fit::FitOptions options;
-    options.solve.lambda = fit.lambda;
-    fit::solve_lightfield(
-        design, options,
-        [&](fit::TileRange rows) {
-            return noise_free_tile(real, light, slab, model_error_rel, rows);
-        },
-        [&](const fit::TileResult& tile) {
-            const std::size_t count = static_cast<std::size_t>(tile.rows.row_count) *
-                                      static_cast<std::size_t>(slab.texels.x);
-            const std::size_t first = static_cast<std::size_t>(tile.rows.first_row) *
-                                      static_cast<std::size_t>(slab.texels.x);
-            for (std::size_t m = 0; m < static_cast<std::size_t>(slab.image_count()); ++m)
-                std::copy_n(tile.coeffs.begin() + static_cast<std::ptrdiff_t>(m * count), count,
-                            slab.coeffs.begin() +
-                                static_cast<std::ptrdiff_t>(m * slab.texel_count() + first));
-        });
-    return lightfield;
-}
 
 // 1 ... 25 m away, over the beam's window, by the R2 sequence (Roberts 2018).
 std::vector<glm::dvec3> receiver_places(double delta_m) {
@@ -148,79 +29,165 @@ std::vector<glm::dvec3> receiver_places(double delta_m) {
     return places;
 }
 
-double real_delta_m(const RealBench& real) {
-    glm::dvec3 middle(0.0);
-    for (std::size_t k = 0; k < real.places.position_m.size(); ++k)
-        middle += apply(real.places.bench_from_filter, glm::dvec3(real.places.position_m[k], 0.0)) /
-                  static_cast<double>(real.places.position_m.size());
-    return -apply(inverse(real.places.bench_from_screen), middle).z;
+model::Receiver facing_lamp(glm::dvec3 at_slab_m, double delta_m) {
+    return {at_slab_m, -glm::normalize(at_slab_m + glm::dvec3(0, 0, delta_m))};
+}
+
+double irradiance_lx(const LightField& lightfield, const model::Receiver& receiver) {
+    return model::luminance(model::irradiance(lightfield, receiver));
+}
+
+double flux_lm(const LightField& lightfield) {
+    return model::luminance(model::flux(lightfield));
+}
+
+// E d^2 from the middle of U.
+double intensity(const ClosureReceiver& receiver, double delta_m) {
+    const glm::dvec3 from_u_m = receiver.at_slab_m + glm::dvec3(0, 0, delta_m);
+    return receiver.truth_lx * glm::dot(from_u_m, from_u_m);
+}
+
+std::vector<ClosureReceiver> lit_receivers(const LabTruth& truth, double delta_m) {
+    constexpr double kDark = 0.01;  // of the largest intensity
+    std::vector<ClosureReceiver> receivers;
+    for (const glm::dvec3& place_m : receiver_places(delta_m))
+        receivers.push_back({place_m});
+    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t k) {
+        receivers[k].truth_lx =
+            true_irradiance_lx(truth, facing_lamp(receivers[k].at_slab_m, delta_m));
+    });
+    double most = 0;
+    for (const ClosureReceiver& receiver : receivers)
+        most = std::max(most, intensity(receiver, delta_m));
+    std::erase_if(receivers, [&](const ClosureReceiver& receiver) {
+        return intensity(receiver, delta_m) < kDark * most;
+    });
+    return receivers;
+}
+
+// Of value over reference, less one.
+struct Deviation {
+    double rms = 0, mean = 0;
+};
+
+template <typename Value, typename Reference>
+Deviation deviation(const std::vector<ClosureReceiver>& receivers,
+                    const Value& value,
+                    const Reference& reference) {
+    Deviation deviation;
+    const auto count = static_cast<double>(receivers.size());
+    for (const ClosureReceiver& receiver : receivers) {
+        const double error = value(receiver) / reference(receiver) - 1;
+        deviation.rms += error * error / count;
+        deviation.mean += error / count;
+    }
+    deviation.rms = std::sqrt(deviation.rms);
+    return deviation;
+}
+
+ErrorSource source_of(const std::string& what,
+                      const LightField& lightfield,
+                      const LightField& noise_free,
+                      const std::vector<ClosureReceiver>& receivers,
+                      double delta_m) {
+    std::vector<ClosureReceiver> seen = receivers;
+    tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t k) {
+        seen[k].fitted_lx = irradiance_lx(lightfield, facing_lamp(seen[k].at_slab_m, delta_m));
+    });
+    const Deviation off = deviation(
+        seen, [](const ClosureReceiver& r) { return r.fitted_lx; },
+        [](const ClosureReceiver& r) { return r.noise_free_lx; });
+    return {what, off.rms, off.mean, flux_lm(lightfield) / flux_lm(noise_free) - 1};
+}
+
+// Largest difference of two cut-off lines, degrees.
+double cutoff_error_deg(const BeamScan& seen, const BeamScan& truth) {
+    const std::vector<double> places = cutoff_places();
+    std::vector<double> error_deg(places.size(), 0.0);
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
+        const auto at = cutoff_tangent(seen, places[k]), real = cutoff_tangent(truth, places[k]);
+        error_deg[k] = at && real ? glm::degrees(std::abs(std::atan(*at) - std::atan(*real))) : 90;
+    });
+    return *std::max_element(error_deg.begin(), error_deg.end());
+}
+
+void add_cutoff(const LabTruth& truth,
+                double delta_m,
+                const LightField& fitted,
+                const LightField& noise_free,
+                Closure& closure) {
+    constexpr double kWall_m = 25;
+    const auto on_wall = [&](double tangent_x, double tangent_y) {
+        return facing_lamp(glm::dvec3(kWall_m * tangent_x, kWall_m * tangent_y, kWall_m - delta_m),
+                           delta_m);
+    };
+    const auto scan = [&](const LightField& lightfield) {
+        return [&on_wall, &lightfield](double x, double y) {
+            return irradiance_lx(lightfield, on_wall(x, y));
+        };
+    };
+    const BeamScan real = [&](double x, double y) {
+        return true_irradiance_lx(truth, on_wall(x, y));
+    };
+    closure.cutoff_deg = cutoff_error_deg(scan(fitted), real);
+    closure.cutoff_basis_deg = cutoff_error_deg(scan(noise_free), real);
 }
 
 void summarize(Closure& closure) {
-    const auto intensity = [](const ClosureReceiver& receiver) {
-        return receiver.truth_lx * glm::dot(receiver.at_slab_m, receiver.at_slab_m);
-    };
-    double most = 0;
-    for (const ClosureReceiver& receiver : closure.receivers)
-        most = std::max(most, intensity(receiver));
-    double square = 0, square_truth = 0;
-    int count = 0, covered = 0;
-    for (const ClosureReceiver& receiver : closure.receivers) {
-        constexpr double kDark = 0.01;
-        if (intensity(receiver) < kDark * most)
-            continue;
-        const double error = receiver.fitted_lx / receiver.noise_free_lx - 1;
-        square += error * error;
-        square_truth += std::pow(receiver.fitted_lx / receiver.truth_lx - 1, 2);
-        covered += std::abs(receiver.fitted_lx - receiver.noise_free_lx) <= 3 * receiver.sigma_lx;
-        ++count;
-    }
-    closure.irradiance_rms = std::sqrt(square / count);
-    closure.irradiance_rms_truth = std::sqrt(square_truth / count);
-    closure.coverage_3sigma = static_cast<double>(covered) / count;
+    const auto fitted = [](const ClosureReceiver& r) { return r.fitted_lx; };
+    const auto noise_free = [](const ClosureReceiver& r) { return r.noise_free_lx; };
+    const auto truth = [](const ClosureReceiver& r) { return r.truth_lx; };
+    closure.irradiance_rms = deviation(closure.receivers, fitted, noise_free).rms;
+    closure.irradiance_rms_truth = deviation(closure.receivers, fitted, truth).rms;
+    closure.basis_rms_truth = deviation(closure.receivers, noise_free, truth).rms;
+    const auto covered = std::count_if(
+        closure.receivers.begin(), closure.receivers.end(), [](const ClosureReceiver& r) {
+            return std::abs(r.fitted_lx - r.noise_free_lx) <= 3 * r.sigma_lx;
+        });
+    closure.coverage_3sigma =
+        static_cast<double>(covered) / static_cast<double>(closure.receivers.size());
 }
 
 }  // namespace
 
-Closure closure_of(const sample_data::Bench& bench,
-                   double time_s,
-                   const rig::Rig& rig,
-                   const fit::CaptureFit& fit,
-                   double model_error_rel) {
-    if (!bench.lamp.file.empty())
-        throw Error{"the truth is not known by formula", "lamp.file", "the headlight",
-                    bench.lamp.file};
-    const RealBench real{bench, sample_data::make_places(bench),
-                         bench.camera.bench_from_camera * rig.planes->camera_from_slab};
-    const sample_data::Headlight headlight = sample_data::make_headlight(bench.lamp.headlight_seed);
-    const LightField noise_free = noise_free_fit(real, fit, model_error_rel);
+Closure closure_of(const LabTruth& truth,
+                   double rig_delta_m,
+                   const fit::RectifiedCapture& capture,
+                   const fit::CaptureFitOptions& options,
+                   const fit::CaptureFit& fit) {
+    const TrueTexels texels = true_texels(truth, capture.planes);
+    const auto fit_truth = [&](const fit::Optics& optics) {
+        return fit_true_texels(texels, capture.planes, optics, fit.lambda, options.model_error_rel);
+    };
+    const LightField noise_free = fit_truth(true_optics(truth));
     Closure closure;
-    closure.lamp_factor = sample_data::lamp_factor(bench, time_s);
-    const Rigid lamp_from_slab = inverse(real.places.bench_from_lamp) * real.bench_from_slab;
-    const std::vector<glm::dvec3> places = receiver_places(rig.planes->delta_m);
-    closure.receivers.resize(places.size());
-    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
-        const glm::dvec3 toward =
-            -glm::normalize(places[k] + glm::dvec3(0, 0, rig.planes->delta_m));
-        const model::Receiver in_slab{places[k], toward};
-        const model::Receiver in_lamp{apply(lamp_from_slab, places[k]),
-                                      lamp_from_slab.rotation * toward};
+    closure.lamp_factor = truth.lamp_factor;
+    closure.receivers = lit_receivers(truth, rig_delta_m);
+    tbb::parallel_for(std::size_t{0}, closure.receivers.size(), [&](std::size_t k) {
         ClosureReceiver& receiver = closure.receivers[k];
-        receiver.at_slab_m = places[k];
-        receiver.truth_lx =
-            closure.lamp_factor * model::luminance(sample_data::irradiance(headlight, in_lamp));
-        receiver.fitted_lx = model::luminance(model::irradiance(fit.lightfield, in_slab));
-        receiver.noise_free_lx =
-            closure.lamp_factor * model::luminance(model::irradiance(noise_free, in_slab));
-        receiver.sigma_lx = std::hypot(model::irradiance_sigma_y(fit.lightfield, in_slab),
+        const model::Receiver at = facing_lamp(receiver.at_slab_m, rig_delta_m);
+        receiver.fitted_lx = irradiance_lx(fit.lightfield, at);
+        receiver.noise_free_lx = irradiance_lx(noise_free, at);
+        receiver.sigma_lx = std::hypot(model::irradiance_sigma_y(fit.lightfield, at),
                                        fit.lightfield.scale_sigma_rel * receiver.fitted_lx);
     });
     summarize(closure);
-    const double flux_lm = closure.lamp_factor * model::luminance(sample_data::flux(headlight));
-    closure.flux_rel = model::luminance(model::flux(fit.lightfield)) / flux_lm - 1;
-    closure.noise_free_flux_rel =
-        closure.lamp_factor * model::luminance(model::flux(noise_free)) / flux_lm - 1;
-    closure.delta_rel = rig.planes->delta_m / real_delta_m(real) - 1;
+    closure.flux_rel = flux_lm(fit.lightfield) / true_flux_lm(truth) - 1;
+    closure.noise_free_flux_rel = flux_lm(noise_free) / true_flux_lm(truth) - 1;
+    closure.delta_rel = rig_delta_m / true_delta_m(truth) - 1;
+    add_cutoff(truth, rig_delta_m, fit.lightfield, noise_free, closure);
+
+    fit::CaptureFitOptions same = options;
+    same.lambda = fit.lambda;
+    same.progress = {};
+    const auto add = [&](const std::string& what, const LightField& lightfield) {
+        closure.budget.push_back(
+            source_of(what, lightfield, noise_free, closure.receivers, rig_delta_m));
+    };
+    add("all", fit.lightfield);
+    add("the filter's places and profile, as calibrated", fit_truth(capture.optics));
+    add("light of the texels, as measured",
+        fit::solve_capture(capture, true_optics(truth), same).lightfield);
     return closure;
 }
 

@@ -187,8 +187,10 @@ RadiometryOptions options_from(const capture::Plan& plan) {
     for (const double angle_deg : plan.screen.angle_deg)
         options.screen.x.push_back(glm::radians(angle_deg));
     options.screen.y = plan.screen.factor;
-    if (plan.photometer)
+    if (plan.photometer) {
+        options.photometer_correction = plan.photometer->correction;
         options.photometer_mismatch_rel = plan.photometer->mismatch_rel;
+    }
     return options;
 }
 

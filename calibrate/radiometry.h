@@ -33,6 +33,7 @@ struct RadiometryOptions {
     double psf_sigma_px = 0.7;           // of the lens, for the filter's edges
     glm::dmat3 rgb_from_raw{1.0};        // linear Rec.709 from white-balanced raw colors
     rig::Curve screen;                   // luminance factor against the angle of view, rad
+    double photometer_correction = 1;    // what its readings are multiplied by
     double photometer_mismatch_rel = 0;  // systematic
 };
 

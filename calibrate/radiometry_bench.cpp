@@ -103,11 +103,12 @@ void measure_scale(const capture::Capture& capture,
                       photometer->reading_sigma_rel);
     if (result.scale) {
         radiometry.is_absolute = true;
-        radiometry.scale_lx_s_per_dn = result.scale->scale_lx_s_per_dn;
+        radiometry.scale_lx_s_per_dn =
+            options.photometer_correction * result.scale->scale_lx_s_per_dn;
         radiometry.scale_sigma_rel = result.scale->sigma_rel;
         radiometry.scale_systematic_rel = options.photometer_mismatch_rel;
-        result.parameters.push_back({"scale_lx_s_per_dn", result.scale->scale_lx_s_per_dn,
-                                     result.scale->sigma_rel * result.scale->scale_lx_s_per_dn});
+        result.parameters.push_back({"scale_lx_s_per_dn", radiometry.scale_lx_s_per_dn,
+                                     result.scale->sigma_rel * radiometry.scale_lx_s_per_dn});
     }
     if (progress)
         progress("stray light", 0.7);

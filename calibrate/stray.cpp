@@ -2,7 +2,7 @@
 #include "calibrate/stray.h"
 
 #include "calibrate/robust.h"
-#include "formats/model/profile.h"
+#include "formats/model/overlap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,15 +47,6 @@ double mean_of_all(const std::vector<float>& values) {
         count += std::isnan(value) ? 0.0 : 1.0;
     }
     return count > 0.0 ? sum / count : 0.0;
-}
-
-// All positions add up to the open lamp times what neighboring profiles add up to, and the peak.
-double overlap_of(const Profile& profile) {
-    double overlap = 0;
-    const int reach = static_cast<int>(profile.cells.size());
-    for (int k = -reach; k <= reach; ++k)
-        overlap += model::eval(profile, k);
-    return overlap * overlap;
 }
 
 // The least light that a block ever sees, over what is held back then; of blocks that see the
@@ -121,6 +112,8 @@ StrayResult stray_of(std::span<const Bracket> brackets,
     std::vector<std::vector<float>> blocks;
     std::vector<double> held_back;
     double open = 0, longest_s = 0;
+    // All positions add up to the open lamp times what neighboring profiles add up to, and the peak.
+    const double overlap = model::overlap(*filter) * model::overlap(*filter);
     for (const Bracket& bracket : brackets) {
         const auto light = [&](const capture::FrameRecord& record) {
             return block_means(
@@ -129,7 +122,7 @@ StrayResult stray_of(std::span<const Bracket> brackets,
         blocks.push_back(light(*bracket.back()));
         const double mean = mean_of_all(light(*bracket.front()));
         held_back.push_back(-mean);
-        open += mean / (filter_peak * overlap_of(*filter));
+        open += mean / (filter_peak * overlap);
         longest_s = std::max(longest_s, bracket.back()->shot.exposure_us * 1e-6);
     }
     for (double& one : held_back)

@@ -26,7 +26,6 @@ struct CaptureFitOptions {
     /// What rig and basis get wrong, of a texel's brightest position: added to every measurement's
     /// sigma. Without it dark positions, whose counts are known best, would rule the bright ones.
     double model_error_rel = 0.003;
-    int replicates = 0;  // bootstrap
     std::uint64_t seed = 1;
     bool wants_color = true;  // of a camera with colors; else luminance alone
     double tile_bytes = 256e6;
@@ -34,10 +33,15 @@ struct CaptureFitOptions {
     std::function<void(double fraction, const std::string& what)> progress;
 };
 
+/// Light beside the filter, of a channel: mean over texels, as through a filter of peak 1.
+struct BesideFilter {
+    double mean_lx = 0, sigma_lx = 0;
+    double chi_square = 0;  // of its texels against the parabola that is taken off
+};
+
 /// What was seen on the way; for the report.
 struct CaptureFit {
     LightField lightfield;
-    std::vector<LightField> replicates;
     FitReport report;
     SmoothnessCurve smoothness;  // empty where lambda was given
     double lambda = 0;
@@ -46,10 +50,10 @@ struct CaptureFit {
     double saturated_share = 0;      // of pixels, in all exposures
     double exposure_chi_square = 0;  // of exposures against each other, by degree of freedom
     double outside_share = 0;        // of the light in the picture that falls beside the extent
-    double clipped_share = 0;        // of light in channels that came out below zero after color
-    double texel_cells_least = 0;    // texel's least width in cells of the sensor's lattice
-    double resolution_m = 0;         // on S, what can be told apart: a texel or a cell, the larger
-    std::vector<float> chi_square;   // by texel, [j][i], first channel, by degree of freedom
+    std::vector<BesideFilter> beside_filter;  // by channel; empty: not measured, not taken off
+    double texel_cells_least = 0;   // texel's least width in cells of the sensor's lattice
+    double resolution_m = 0;        // on S, what can be told apart: a texel or a cell, the larger
+    std::vector<float> chi_square;  // by texel, [j][i], first channel, by degree of freedom
     double merge_s = 0, solve_s = 0, smoothness_s = 0;
 };
 

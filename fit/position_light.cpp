@@ -26,6 +26,12 @@ double true_exposure_s(const rig::Radiometry& radiometry, const FrameRecord& fra
     return 1e-6 * (frame.exposure_us > 0 ? frame.exposure_us : frame.shot.exposure_us);
 }
 
+// The camera's own clock, which tells when it was exposed; of cameras without one, the session's.
+double time_s(const FrameRecord& frame) {
+    return frame.camera_time_ns > 0 ? 1e-9 * static_cast<double>(frame.camera_time_ns)
+                                    : 1e-6 * static_cast<double>(frame.time_us);
+}
+
 double dark_factor(const rig::Radiometry& radiometry, const PositionFrames& position) {
     double sum_c = 0;
     int count = 0;
@@ -39,6 +45,21 @@ double dark_factor(const rig::Radiometry& radiometry, const PositionFrames& posi
                : std::exp2((sum_c / count - radiometry.dark_temperature_c) / kDarkDoubling_c);
 }
 
+void check_map(const std::vector<float>& map, const char* name, glm::ivec2 size_px) {
+    const auto pixels = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
+    if (map.size() != pixels)
+        throw Error{"the rig's maps do not fit", name, fmt::format("{} pixels", pixels),
+                    fmt::format("{}", map.size())};
+    const auto wrong =
+        std::find_if(map.begin(), map.end(), [](float value) { return !std::isfinite(value); });
+    if (wrong == map.end())
+        return;
+    const auto at = static_cast<int>(wrong - map.begin());
+    throw Error{"a map of the rig holds what is no number",
+                fmt::format("{} at pixel ({}, {})", name, at % size_px.x, at / size_px.x),
+                "finite numbers", fmt::format("{}", *wrong)};
+}
+
 // Mean signal above dark over the pixels that are well below saturation in the first look.
 class ReferenceMean {
   public:
@@ -49,6 +70,9 @@ class ReferenceMean {
         for (std::size_t k = 0; k < frame.values.size(); ++k)
             if (frame.values[k] < limit_dn && measurement.maps.is_bad[k] == 0.0F)
                 pixels_.push_back(k);
+        if (pixels_.empty())
+            throw Error{"a look at the reference is saturated", name_of(first.shot),
+                        fmt::format("pixels below {:g} DN", limit_dn), "none"};
     }
 
     double rate_dn_per_s(const FrameRecord& record) const {
@@ -169,6 +193,15 @@ std::vector<PositionFrames> positions_of(const capture::Capture& capture) {
     return positions;
 }
 
+PositionFrames blocked_frames(const capture::Capture& capture) {
+    PositionFrames blocked;
+    blocked.position = glm::ivec2(-1);
+    for (const auto& [number, frame] : capture.frames)
+        if (frame.shot.kind == ShotKind::Blocked)
+            blocked.frames.push_back(&frame);
+    return blocked;
+}
+
 void check_rig(const Measurement& measurement) {
     const rig::Rig& rig = measurement.rig;
     if (!rig.lens || !rig.planes || !rig.radiometry)
@@ -192,6 +225,11 @@ void check_rig(const Measurement& measurement) {
                                     rig.planes->grid.y),
                         fmt::format("column {}, row {}", position.x, position.y)};
     }
+    const rig::Maps& maps = measurement.maps;
+    check_map(maps.black_dn, "black_dn", rig.lens->size_px);
+    check_map(maps.dark_dn_per_s, "dark_dn_per_s", rig.lens->size_px);
+    check_map(maps.response, "response", rig.lens->size_px);
+    check_map(maps.is_bad, "is_bad", rig.lens->size_px);
 }
 
 LampDrift::LampDrift(const Measurement& measurement) {
@@ -203,10 +241,12 @@ LampDrift::LampDrift(const Measurement& measurement) {
         return;
     const ReferenceMean mean(measurement, *references.front());
     const double first = mean.rate_dn_per_s(*references.front());
+    if (!(first > 0.0))
+        throw Error{"a look at the reference shows no light", name_of(references.front()->shot),
+                    "the lamp through the filter in the grid's middle", "darkness"};
     for (const FrameRecord* frame : references) {
         const double factor = mean.rate_dn_per_s(*frame) / first;
-        by_session_[frame->session].emplace_back(1e-6 * static_cast<double>(frame->time_us),
-                                                 factor);
+        by_session_[frame->session].emplace_back(time_s(*frame), factor);
         largest_rel_ = std::max(largest_rel_, std::abs(factor - 1));
         ++looks_;
     }
@@ -219,15 +259,15 @@ double LampDrift::factor(const FrameRecord& frame) const {
     if (session == by_session_.end())
         return 1;
     const auto& looks = session->second;
-    const double time_s = 1e-6 * static_cast<double>(frame.time_us);
-    const auto after = std::lower_bound(looks.begin(), looks.end(), std::pair(time_s, 0.0));
+    const double at_s = time_s(frame);
+    const auto after = std::lower_bound(looks.begin(), looks.end(), std::pair(at_s, 0.0));
     if (after == looks.begin())
         return looks.front().second;
     if (after == looks.end())
         return looks.back().second;
     const auto& [time0_s, factor0] = *std::prev(after);
     const auto& [time1_s, factor1] = *after;
-    return factor0 + (factor1 - factor0) * (time_s - time0_s) / (time1_s - time0_s);
+    return factor0 + (factor1 - factor0) * (at_s - time0_s) / (time1_s - time0_s);
 }
 
 MergedImage position_light(const Measurement& measurement,

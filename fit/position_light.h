@@ -32,14 +32,18 @@ struct PositionFrames {
 /// The positions that have frames, row by row.
 std::vector<PositionFrames> positions_of(const capture::Capture& capture);
 
-/// Throws Error where the rig cannot be that of the capture: other picture size, bits or stage
-/// grid.
+/// The frames with an opaque plate instead of the filter; none where the plan asked for none.
+PositionFrames blocked_frames(const capture::Capture& capture);
+
+/// Throws Error where the rig cannot be that of the capture (other picture size, bits or stage
+/// grid), or its maps hold what is no number.
 void check_rig(const Measurement& measurement);
 
 /// The lamp's light at a frame's time over that of the first look at the reference; 1 where a
 /// session has no look.
 class LampDrift {
   public:
+    /// Throws Error where the first look is saturated all over, or dark.
     explicit LampDrift(const Measurement& measurement);
 
     double factor(const capture::FrameRecord& frame) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit/stream.h"
 
+#include "fit/keep_light.h"
 #include "fit/noise.h"
 #include "formats/files/error.h"
 
@@ -102,6 +103,8 @@ void solve_replicates(
                     normal_number(key, static_cast<std::uint32_t>(k)) / std::sqrt(s.weight[k]);
         s.replicate.is_free = s.fit[channel].is_free;
         solve_again(s.texel, job.penalty, s.drawn, s.weight, s.work, s.replicate);
+        if (job.options.keeps_light)
+            keep_light(s.drawn, s.weight, s.work, s.replicate);
         store(job, channel, row, i, s.replicate.coeffs, job.result.replicates[r]);
     }
 }
@@ -120,6 +123,12 @@ void add_texel(const TexelFit& fit, double kkt_limit, FitReport& report) {
     report.chi_square += fit.chi_square;
 }
 
+void fit_texel(const TileJob& job, Scratch& s, TexelFit& fit) {
+    solve_texel(s.texel, job.penalty, s.b, s.weight, job.options.solve, s.work, fit);
+    if (job.options.keeps_light)
+        keep_light(s.b, s.weight, s.work, fit);
+}
+
 // The texels of a row from left to right: each starts from its neighbor's free coefficients, the
 // first from all free, so that nothing depends on tiles or threads.
 FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
@@ -132,7 +141,7 @@ FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
         for (std::size_t c = 0; c < job.layout.channels; ++c) {
             TexelFit& fit = s.fit[c];
             gather(job, c, row, i, s);
-            solve_texel(s.texel, job.penalty, s.b, s.weight, job.options.solve, s.work, fit);
+            fit_texel(job, s, fit);
             store(job, c, row, i, fit.coeffs, job.result.coeffs);
             if (job.options.solve.wants_sigma)
                 store(job, c, row, i, fit.sigma, job.result.sigma);

@@ -53,6 +53,7 @@ FitReport merged(const FitReport& a, const FitReport& b);
 struct FitOptions {
     SolveOptions solve;
     int channels = 1;
+    bool keeps_light = false;  // of every texel, summed over its measurements (keep_light.h)
     double kkt_limit = 1e-6;
     int replicates = 0;         // parametric bootstrap: fits of G c + noise; 16 give sigma to 18 %
     std::uint64_t seed = 1;     // of the replicates' noise

@@ -104,7 +104,10 @@ Extent visible_extent(const rig::Rig& rig) {
             };
             extent = moved(last_right([&](double t) { return is_visible(rig, moved(t)); }));
         }
-    return extent;
+    // A hair inside: rounding must not put the outermost texels' corners out of sight.
+    constexpr double kHair = 1e-9;
+    const glm::dvec2 hair_m = kHair * (extent.max_m - extent.min_m);
+    return {extent.min_m + hair_m, extent.max_m - hair_m};
 }
 
 Extent lit_extent(const rig::Rig& rig,

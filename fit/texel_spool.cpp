@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 namespace nearfield::fit {
 namespace {
@@ -42,8 +43,17 @@ TexelSpool::TexelSpool(const std::string& folder, glm::ivec2 texels, int channel
       is_put_(static_cast<std::size_t>(channels) * static_cast<std::size_t>(positions), false),
       descriptor_(open_unnamed(folder_)) {}
 
+TexelSpool::TexelSpool(TexelSpool&& other) noexcept
+    : folder_(std::move(other.folder_)),
+      texels_(other.texels_),
+      channels_(other.channels_),
+      positions_(other.positions_),
+      is_put_(std::move(other.is_put_)),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
 TexelSpool::~TexelSpool() {
-    close(descriptor_);
+    if (descriptor_ >= 0)
+        close(descriptor_);
 }
 
 std::size_t TexelSpool::texel_count() const {

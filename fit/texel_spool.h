@@ -15,8 +15,10 @@ class TexelSpool {
     /// Throws Error naming the folder if it cannot be written.
     TexelSpool(const std::string& folder, glm::ivec2 texels, int channels, int positions);
     ~TexelSpool();
+    TexelSpool(TexelSpool&& other) noexcept;
     TexelSpool(const TexelSpool&) = delete;
     TexelSpool& operator=(const TexelSpool&) = delete;
+    TexelSpool& operator=(TexelSpool&&) = delete;
 
     /// Throws Error where the disk is full.
     void put(int position, int channel, const RectifiedImage& image);

@@ -33,10 +33,11 @@ std::vector<Shot> lights_of(const Plan& plan) {
     return shots;
 }
 
-constexpr Words<ShotKind, 6> kShotKinds{{{"target", ShotKind::Target},
+constexpr Words<ShotKind, 7> kShotKinds{{{"target", ShotKind::Target},
                                          {"flat", ShotKind::Flat},
                                          {"filter", ShotKind::Filter},
                                          {"dark", ShotKind::Dark},
+                                         {"blocked", ShotKind::Blocked},
                                          {"light", ShotKind::Light},
                                          {"reference", ShotKind::Reference}}};
 
@@ -67,6 +68,14 @@ std::vector<Shot> filter_views_of(const Plan& plan) {
     std::vector<Shot> shots;
     for (const glm::ivec2 position : plan.filter_views.positions)
         shots.push_back({0, ShotKind::Filter, position, -1, exposure_us, 0});
+    return shots;
+}
+
+std::vector<Shot> blocked_of(const Plan& plan) {
+    std::vector<Shot> shots;
+    for (const double exposure_us : plan.bracket.exposures_us)
+        for (int repeat = 0; repeat < plan.blocked; ++repeat)
+            shots.push_back({0, ShotKind::Blocked, glm::ivec2(-1), -1, exposure_us, repeat});
     return shots;
 }
 
@@ -112,6 +121,7 @@ std::vector<Shot> shots_of(const Plan& plan) {
     append(flats_of(plan));
     append(filter_views_of(plan));
     append(darks_of(plan, shots));
+    append(blocked_of(plan));
     append(lights_of(plan));
     for (std::size_t k = 0; k < shots.size(); ++k)
         shots[k].number = static_cast<int>(k);

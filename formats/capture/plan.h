@@ -55,8 +55,11 @@ struct FilterViewPlan {
 /// `reading_lx`; they give the scale of all light.
 struct PhotometerPlan {
     glm::dvec2 on_screen_board_m{0};  // its middle, in the board's frame of the first screen view
+    /// Spectral mismatch correction, of a certificate for this lamp behind this filter: what a
+    /// reading is multiplied by.
+    double correction = 1;
     double sigma_rel = 0;             // random, of a reading
-    double mismatch_rel = 0;          // systematic: V(lambda) mismatch and its own calibration
+    double mismatch_rel = 0;  // systematic: what the correction leaves, and its own calibration
 };
 
 /// The screen's luminance factor against the viewing angle, relative to an ideal diffuser of its
@@ -78,6 +81,7 @@ struct Plan {
     FilterViewPlan filter_views;
     BracketPlan bracket;
     int repeats = 1;
+    int blocked = 0;  // at each of the bracket's exposures, a plate instead of the filter
     int darks = 4;  // for every exposure, lamp off
     int flats = 0;  // of an even source before the lens, at each of their exposures
     std::vector<double> flat_exposures_us;  // ascending; empty: the bracket's middle one
@@ -92,7 +96,8 @@ struct Plan {
     double settle_s = 0;            // waited after every move of an instrument
 };
 
-enum class ShotKind { Target, Flat, Filter, Dark, Light, Reference };
+/// Blocked: an opaque plate instead of the filter, the lamp on: light that goes another way.
+enum class ShotKind { Target, Flat, Filter, Dark, Blocked, Light, Reference };
 
 /// One frame to take. Its number is its place in the plan's list, from 0; shots of one plan never
 /// change their numbers.
@@ -113,7 +118,7 @@ Plan plan_from(const JsonField& document);
 Json json_of(const Plan& plan);
 
 /// All frames of a plan in the order in which they are taken: targets, flats, filter views, darks
-/// at every exposure of them and of the bracket, then positions in serpentine order with their
+/// at every exposure of them and of the bracket, the blocked lamp, then positions in serpentine order with their
 /// exposures and repeats, and a look at the reference every `drift_every` positions. The bracket
 /// must be known.
 std::vector<Shot> shots_of(const Plan& plan);

@@ -112,7 +112,7 @@ ScreenPlan screen_from(const JsonField& field) {
 }
 
 PhotometerPlan photometer_from(const JsonField& field, const Plan& plan) {
-    field.only({"on_screen_board_m", "sigma_rel", "mismatch_rel"});
+    field.only({"on_screen_board_m", "correction", "sigma_rel", "mismatch_rel"});
     const bool has_screen_view =
         std::find(plan.views.begin(), plan.views.end(), TargetPlane::Screen) != plan.views.end();
     if (!plan.board || !has_screen_view)
@@ -123,6 +123,7 @@ PhotometerPlan photometer_from(const JsonField& field, const Plan& plan) {
     const std::vector<JsonField> place = field.at("on_screen_board_m").elements(2);
     photometer.on_screen_board_m = {number_within(place[0], -100, 100),
                                     number_within(place[1], -100, 100)};
+    photometer.correction = optional_number(field, "correction", 1, 0.1, 10);
     photometer.sigma_rel = number_within(field.at("sigma_rel"), 0, 1);
     photometer.mismatch_rel = number_within(field.at("mismatch_rel"), 0, 1);
     return photometer;
@@ -133,10 +134,10 @@ void check_frame_count(const Plan& plan, const std::string& where) {
     constexpr double kMostShots = 1e6;
     const auto count = [](std::size_t size) { return static_cast<double>(size); };
     const double series = count(plan.flat_exposures_us.size());
-    const double shots = count(plan.bracket.exposures_us.size()) *
-                             (static_cast<double>(plan.grid.x) * plan.grid.y * plan.repeats) +
-                         (count(plan.bracket.exposures_us.size()) + series + 2) * plan.darks +
-                         series * plan.flats;
+    const double shots =
+        count(plan.bracket.exposures_us.size()) *
+            (static_cast<double>(plan.grid.x) * plan.grid.y * plan.repeats + plan.blocked) +
+        (count(plan.bracket.exposures_us.size()) + series + 2) * plan.darks + series * plan.flats;
     if (shots > kMostShots)
         throw Error{"plan too large", where, fmt::format("at most {:g} frames", kMostShots),
                     fmt::format("{:g}", shots)};
@@ -164,8 +165,9 @@ Plan plan_from(const JsonField& document) {
         throw Error{"cannot read plan", document.where() + ".nearfield_plan",
                     fmt::format("version 1 ... {}", kPlanVersion), fmt::format("{}", version)};
     document.only({"nearfield_plan", "camera", "stage", "instruments", "filter", "filter_views",
-                   "exposures_us", "bracket", "repeats", "darks_per_exposure", "flats", "targets",
-                   "screen", "photometer", "drift", "exposure_ratio_limit_rel", "settle_s"});
+                   "exposures_us", "bracket", "repeats", "darks_per_exposure",
+                   "blocked_per_exposure", "flats", "targets", "screen", "photometer", "drift",
+                   "exposure_ratio_limit_rel", "settle_s"});
     Plan plan;
     if (document.has("camera"))
         plan.camera = camera_from(document.at("camera"));
@@ -177,6 +179,7 @@ Plan plan_from(const JsonField& document) {
     plan.bracket = bracket_from(document);
     plan.repeats = optional_integer(document, "repeats", plan.repeats, 1, kMostFrames);
     plan.darks = optional_integer(document, "darks_per_exposure", plan.darks, 0, kMostFrames);
+    plan.blocked = optional_integer(document, "blocked_per_exposure", 0, 0, kMostFrames);
     if (document.has("flats"))
         read_flats(document.at("flats"), plan);
     if (document.has("targets"))

@@ -73,6 +73,7 @@ Json screen_json(const ScreenPlan& screen) {
 
 Json photometer_json(const PhotometerPlan& photometer) {
     return {{"on_screen_board_m", {photometer.on_screen_board_m.x, photometer.on_screen_board_m.y}},
+            {"correction", photometer.correction},
             {"sigma_rel", photometer.sigma_rel},
             {"mismatch_rel", photometer.mismatch_rel}};
 }
@@ -96,6 +97,7 @@ Json json_of(const Plan& plan) {
                            {"darkest_share", plan.bracket.darkest_share}};
     document["repeats"] = plan.repeats;
     document["darks_per_exposure"] = plan.darks;
+    document["blocked_per_exposure"] = plan.blocked;
     document["flats"] = flats_json(plan);
     document["targets"] = targets_json(plan);
     if (!plan.screen.angle_deg.empty())

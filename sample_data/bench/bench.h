@@ -178,6 +178,7 @@ void check(const Bench& bench, const std::string& where);
 enum class Subject {
     Position,  // the filter (hole, camera) at Shot::position
     Open,      // nothing on U (Setup::Direct: not possible)
+    Blocked,   // an opaque plate on U: stray light alone (Setup::Direct: not possible)
     Flat,      // an even source of flat_cd_m2 before the lens
     Target,    // the board in pose Shot::target_view
     Filter,    // the filter (plate) at Shot::position itself, without the screen, against an even
@@ -189,7 +190,7 @@ struct Shot {
     Subject subject = Subject::Position;
     glm::ivec2 position{0};  // column, row of the stage: column rises with x, row with y
     int target_view = 0;     // index in BenchTargets::views
-    bool lamp_on = true;     // for Position and Open; room light stays
+    bool lamp_on = true;     // for Position, Open, Blocked; room light stays
     double exposure_us = 10000;
     double gain_db = 0;
     double time_s = 0;  // at the exposure's middle, since lamp and camera were switched on
@@ -222,7 +223,8 @@ std::vector<std::uint16_t> expose(const PreparedBench& prepared, const Shot& sho
 /// and with the lamp at its nominal light, [row from the top][column]: what noise is added to.
 std::vector<float> signal_e_per_s(const PreparedBench& prepared, const Shot& shot);
 
-/// The photometer's reading in lux. Subject::Position and Open; room light alone otherwise.
+/// The photometer's reading in lux. Subject::Position, Open and Blocked; room light alone
+/// otherwise.
 double photometer_lx(const PreparedBench& prepared, const Shot& shot);
 
 /// The lamp's light at a time relative to its nominal, and the sensor's temperature.

@@ -54,6 +54,12 @@ Signal signal_of(const PreparedBench& prepared, const Shot& shot) {
             signal.lamp = prepared.open;
             signal.rest = prepared.room;
             break;
+        case Subject::Blocked:
+            require(!prepared.blocked.empty(), "shot.subject", "a subject of this setup",
+                    "blocked");
+            signal.lamp = prepared.blocked;
+            signal.rest = prepared.room;
+            break;
         case Subject::Flat:
             signal.rest = prepared.flat;
             break;
@@ -193,6 +199,8 @@ double photometer_lx(const PreparedBench& prepared, const Shot& shot) {
         lamp_lx = prepared.photometer_lx[position_index(bench, shot.position)];
     if (shot.lamp_on && shot.subject == Subject::Open)
         lamp_lx = prepared.photometer_open_lx;
+    if (shot.lamp_on && shot.subject == Subject::Blocked)
+        lamp_lx = prepared.photometer_blocked_lx;
     const double true_lx = lamp_lx * lamp_factor(bench, shot.time_s) + prepared.photometer_room_lx;
     const glm::dvec2 z = normal_pair(bench.seed, Draw::Photometer, shot.frame_number, 0);
     return true_lx * (1.0 + bench.photometer.sigma_rel * z.x) + bench.photometer.sigma_lx * z.y;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMostBytes = 4.0 * (1ULL << 30U);
 
 void check_memory(const Bench& bench) {
-    const double pictures = position_count(bench) + 6.0 + double(bench.targets.views.size());
+    const double pictures = position_count(bench) + 7.0 + double(bench.targets.views.size());
     const double bytes = sizeof(float) * pictures * bench.camera.size_px.x * bench.camera.size_px.y;
     if (bytes > kMostBytes)
         throw Error("pictures take too much memory", "filter.grid, camera.size_px", "at most 4 GiB",
@@ -67,12 +67,13 @@ void prepare_photometer(const RayLamp& lamp, PreparedBench& prepared) {
     const LineLight line =
         line_light(light, place, photometer.normal, color, is_filter ? position_count(bench) : 0);
     prepared.photometer_open_lx = line.open[0];
-    std::vector<double> strayed(prepared.photometer_lx.size(), 0.0);
+    StrayedLight strayed{std::vector<double>(prepared.photometer_lx.size(), 0.0), 0.0};
     if (bench.stray.blocked_share > 0.0)
         strayed = strayed_light(light, color);
+    prepared.photometer_blocked_lx = strayed.blocked;
     for (std::size_t m = 0; m < prepared.photometer_lx.size(); ++m)
         prepared.photometer_lx[m] =
-            strayed[m] + (is_filter ? line.positions[m]
+            strayed.positions[m] + (is_filter ? line.positions[m]
                                     : hole_light(light, place, photometer.normal, color,
                                                  prepared.places.position_m[m])[0]);
 }

@@ -28,9 +28,13 @@ void prepare_screen(const RayLamp& lamp,
                     const std::function<void(double)>& progress,
                     PreparedBench& prepared);
 
-/// Light held back that strays evenly all the same, as one color weighs it: [position]. From a
-/// coarse grid on what the camera sees of the screen.
-std::vector<double> strayed_light(const LensLight& light, const SeenColors& color);
+/// Light held back that strays evenly all the same, as one color weighs it. From a coarse grid on
+/// what the camera sees of the screen.
+struct StrayedLight {
+    std::vector<double> positions;
+    double blocked = 0;  // an opaque plate holds back everything
+};
+StrayedLight strayed_light(const LensLight& light, const SeenColors& color);
 
 /// Pictures by a camera that looks into the lamp.
 void prepare_direct(const RayLamp& lamp,

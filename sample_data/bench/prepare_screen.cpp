@@ -188,7 +188,7 @@ OpticsError estimate_error(const LensLight& light,
 
 }  // namespace
 
-std::vector<double> strayed_light(const LensLight& light, const SeenColors& color) {
+StrayedLight strayed_light(const LensLight& light, const SeenColors& color) {
     const Bench& bench = *light.bench;
     const ScreenGrid seen =
         make_screen_grid(bench, *light.places, make_sample_grid(bench.camera, 1));
@@ -197,7 +197,8 @@ std::vector<double> strayed_light(const LensLight& light, const SeenColors& colo
     const glm::dvec2 step_m = seen.step_m * glm::dvec2(seen.count) / glm::dvec2(kParts);
     const glm::dvec2 min_m = seen.min_m - 0.5 * seen.step_m;
     const auto positions = static_cast<std::size_t>(position_count(bench));
-    std::vector<double> blocked(positions, 0.0);
+    StrayedLight strayed;
+    strayed.positions.assign(positions, 0.0);
     for (int row = 0; row < kParts.y; ++row) {
         std::vector<glm::dvec3> points;
         points.reserve(static_cast<std::size_t>(kParts.x));
@@ -205,13 +206,17 @@ std::vector<double> strayed_light(const LensLight& light, const SeenColors& colo
             points.push_back(
                 screen_point(*light.places, min_m + (glm::dvec2(column, row) + 0.5) * step_m));
         const LineLight line = light_on_line(light, points, color);
-        for (std::size_t m = 0; m < positions; ++m)
-            for (std::size_t i = 0; i < points.size(); ++i)
-                blocked[m] += line.open[i] - line.positions[m * points.size() + i];
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            strayed.blocked += line.open[i];
+            for (std::size_t m = 0; m < positions; ++m)
+                strayed.positions[m] += line.open[i] - line.positions[m * points.size() + i];
+        }
     }
-    for (double& value : blocked)
-        value *= bench.stray.blocked_share / (kParts.x * kParts.y);
-    return blocked;
+    const double share = bench.stray.blocked_share / (kParts.x * kParts.y);
+    strayed.blocked *= share;
+    for (double& value : strayed.positions)
+        value *= share;
+    return strayed;
 }
 
 void prepare_screen(const RayLamp& lamp,
@@ -240,6 +245,9 @@ void prepare_screen(const RayLamp& lamp,
                  prepared.positions[m]);
     });
     prepared.open = screen_picture(bench, samples, at_samples, grid, seen.open);
+    prepared.blocked.assign(prepared.open.size(), 0.0F);
+    const std::vector<float> nothing(seen.open.size(), 0.0F);
+    add_even(bench, even, strayed(bench, grid, seen.open, nothing), prepared.blocked);
     prepared.room.assign(prepared.open.size(), 0.0F);
     std::vector<double> room;
     for (const glm::dvec3& color : colors)

@@ -21,12 +21,13 @@ struct PreparedBench {
     Places places;
     std::vector<std::vector<float>> positions;  // [position], lamp at its nominal light
     std::vector<float> open;                    // empty: not possible
+    std::vector<float> blocked;                 // light that goes beside a plate on U
     std::vector<float> room;                    // room light on the screen; empty: none
     std::vector<float> flat;
     std::vector<std::vector<float>> targets;           // [view]
     std::vector<float> prnu, dark_e_per_s, offset_dn;  // fixed pattern; dark current at reference
     std::vector<double> photometer_lx;                 // [position]
-    double photometer_open_lx = 0, photometer_room_lx = 0;
+    double photometer_open_lx = 0, photometer_blocked_lx = 0, photometer_room_lx = 0;
     OpticsError error;
 };
 

@@ -26,6 +26,7 @@ enum class Subject : std::uint32_t {
     Target = 3,    // the calibration target in pose Stage::target_view
     Cap = 4,       // the lens is covered
     Filter = 5,    // the filter itself at Stage::filter, without the screen
+    Blocked = 6,   // an opaque plate instead of the filter
 };
 
 /// What the client moved in the lab, by vendor features.
@@ -58,7 +59,7 @@ struct Lab {
     glm::ivec2 filter_grid{1, 1};    // positions of the filter
     int target_views = 0;            // poses of the calibration target; 0: no Subject::Target
     bool can_open = true;            // Subject::Open exists
-    bool can_see_filter = true;      // Subject::Filter exists
+    bool can_see_filter = true;      // Subject::Filter and Subject::Blocked exist
     double black_level_dn = 0;       // in the sensor's bits, read by BlackLevel
 
     /// The sensor's values of a frame, rows from the top, each below 2^sensor_bits.

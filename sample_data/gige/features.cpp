@@ -193,8 +193,10 @@ void add_lab(List& list, const Lab& lab) {
     if (lab.target_views > 0)
         offer("Target", Subject::Target);
     offer("Cap", Subject::Cap);
-    if (lab.can_see_filter)
+    if (lab.can_see_filter) {
         offer("Filter", Subject::Filter);
+        offer("Blocked", Subject::Blocked);
+    }
     list.push_back(
         choice(category, "LabSubject", address::kSubject, subjects, "What the camera is shown"));
     list.push_back(integer(category, "LabFilterX", address::kFilterX, 0, lab.filter_grid.x - 1, 0,

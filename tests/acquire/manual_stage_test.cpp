@@ -28,9 +28,10 @@ TEST(ManualStage, AsksForWhatEachShotNeedsOnce) {
     arrange({5, ShotKind::Filter, {2, 1}, -1, 100, 0});
     arrange({6, ShotKind::Filter, {0, 1}, -1, 100, 0});
     arrange({7, ShotKind::Dark, {-1, -1}, -1, 100, 0});
-    arrange({8, ShotKind::Light, {2, 1}, -1, 100, 0});
-    arrange({9, ShotKind::Light, {2, 1}, -1, 400, 0});
-    ASSERT_EQ(asked.size(), 8U);
+    arrange({8, ShotKind::Blocked, {-1, -1}, -1, 100, 0});
+    arrange({9, ShotKind::Light, {2, 1}, -1, 100, 0});
+    arrange({10, ShotKind::Light, {2, 1}, -1, 400, 0});
+    ASSERT_EQ(asked.size(), 9U);
     EXPECT_THAT(asked[0], AllOf(HasSubstr("on the screen"), HasSubstr("view 1")));
     EXPECT_THAT(asked[1],
                 AllOf(HasSubstr("screen away"), HasSubstr("filter's plane"), HasSubstr("view 2")));
@@ -40,7 +41,8 @@ TEST(ManualStage, AsksForWhatEachShotNeedsOnce) {
                                 HasSubstr("column 2, row 1")));
     EXPECT_THAT(asked[5], HasSubstr("column 0, row 1"));
     EXPECT_THAT(asked[6], AllOf(HasSubstr("screen in its place"), HasSubstr("darken the lamp")));
-    EXPECT_THAT(asked[7], AllOf(HasSubstr("lamp on"), HasSubstr("column 2, row 1")));
+    EXPECT_THAT(asked[7], AllOf(HasSubstr("lamp on"), HasSubstr("opaque plate")));
+    EXPECT_THAT(asked[8], AllOf(HasSubstr("lamp on"), HasSubstr("column 2, row 1")));
 }
 
 }  // namespace

@@ -21,12 +21,12 @@ constexpr const char* kPlan = R"({
   "camera": {"pixel_format": "BayerRG12", "rgb_from_raw": [1.5, -0.4, -0.1, 0, 1.25, 0.5, 2, 3, 4]},
   "filter": {"columns": 3, "rows": 2, "pitch_m": [0.02, 0.02], "basis": "bspline", "peak": [0.5, 0.51, 0.49]},
   "filter_views": {"positions": [[0, 0], [2, 1], [1, 0]], "exposure_us": 700},
-  "exposures_us": [100, 400, 1600], "darks_per_exposure": 1,
+  "exposures_us": [100, 400, 1600], "darks_per_exposure": 1, "blocked_per_exposure": 2,
   "flats": {"count": 2, "exposures_us": [400, 600, 900]},
   "targets": {"board": {"kind": "charuco", "squares": [8, 6], "square_m": 0.03, "marker_m": 0.0225, "dictionary": "4x4_50"},
               "views": ["screen", "filter", "free", "free"], "exposure_us": 800},
   "screen": {"factor": [[0, 1], [10, 0.997], [30, 0.99]]},
-  "photometer": {"on_screen_board_m": [0.11, -0.02], "sigma_rel": 0.003, "mismatch_rel": 0.02}
+  "photometer": {"on_screen_board_m": [0.11, -0.02], "correction": 0.997, "sigma_rel": 0.003, "mismatch_rel": 0.02}
 })";
 
 Plan plan_of(const std::string& text) {
@@ -69,6 +69,7 @@ TEST(LabPlan, SaysWhatIsWritten) {
     EXPECT_EQ(plan.screen.factor, (std::vector{1.0, 0.997, 0.99}));
     ASSERT_TRUE(plan.photometer.has_value());
     EXPECT_EQ(plan.photometer->on_screen_board_m, glm::dvec2(0.11, -0.02));
+    EXPECT_EQ(plan.photometer->correction, 0.997);
     EXPECT_EQ(plan.photometer->sigma_rel, 0.003);
     EXPECT_EQ(plan.photometer->mismatch_rel, 0.02);
 }
@@ -94,9 +95,11 @@ TEST(LabPlan, LeavesAsItWasWhatIsNotSaid) {
     EXPECT_EQ(plan.camera.rgb_from_raw, glm::dmat3(1.0));
     EXPECT_TRUE(plan.screen.angle_deg.empty());
     EXPECT_TRUE(plan.filter_views.positions.empty());
+    EXPECT_EQ(plan.blocked, 0);
 }
 
-// 4 targets, 2 flats at 3 exposures, 3 filter views, darks at 100 400 1600 and 800, 600, 900, 700.
+// 4 targets, 2 flats at 3 exposures, 3 filter views, darks at 100 400 1600 and 800, 600, 900, 700,
+// 2 frames of the blocked lamp at 3 exposures.
 TEST(LabPlan, TakesFilterViewsBetweenFlatsAndDarks) {
     const std::vector<Shot> shots = shots_of(plan_of(kPlan));
     const auto kind_at = [&](std::size_t k) { return shots.at(k).kind; };
@@ -107,8 +110,11 @@ TEST(LabPlan, TakesFilterViewsBetweenFlatsAndDarks) {
     EXPECT_EQ(kind_at(12), ShotKind::Filter);
     EXPECT_EQ(kind_at(13), ShotKind::Dark);
     EXPECT_EQ(kind_at(19), ShotKind::Dark);
-    EXPECT_EQ(kind_at(20), ShotKind::Light);
-    EXPECT_EQ(shots.size(), 20U + 6U * 3U);
+    EXPECT_EQ(kind_at(20), ShotKind::Blocked);
+    EXPECT_EQ(kind_at(25), ShotKind::Blocked);
+    EXPECT_EQ(name_of(shots[25]), "blocked_1600us_r001");
+    EXPECT_EQ(kind_at(26), ShotKind::Light);
+    EXPECT_EQ(shots.size(), 26U + 6U * 3U);
     EXPECT_EQ(name_of(shots[11]), "filter_x002_y001_700us_r000");
     EXPECT_EQ(shots[5].repeat, 1);
     EXPECT_EQ(shots[6].exposure_us, 600);
@@ -119,6 +125,8 @@ TEST(LabPlan, TakesFilterViewsBetweenFlatsAndDarks) {
     EXPECT_EQ(darks_us, (std::vector{100.0, 400.0, 600.0, 700.0, 800.0, 900.0, 1600.0}));
     const Json word = word_of(ShotKind::Filter);
     EXPECT_EQ(shot_kind_from({word, "kind"}), ShotKind::Filter);
+    const Json blocked = word_of(ShotKind::Blocked);
+    EXPECT_EQ(shot_kind_from({blocked, "kind"}), ShotKind::Blocked);
 }
 
 TEST(LabPlan, WithoutAFilterTakesTargetsAlone) {
@@ -190,6 +198,8 @@ TEST(LabPlan, RefusesSlipsOfThePen) {
         {"\"screen\", \"filter\"", "\"free\", \"filter\"", "no view on the screen"},
         {"\"sigma_rel\": 0.003, ", "", "photometer"},
         {"0.02}", "2}", "photometer.mismatch_rel"},
+        {"0.997, \"sigma", "0, \"sigma", "photometer.correction"},
+        {"exposure\": 2,", "exposure\": -2,", "blocked_per_exposure"},
         {"[0.11, -0.02]", "[110, -20]", "photometer.on_screen_board_m[0]"},
     };
     for (const Slip& slip : slips)

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fit/solve_capture.h"
+
+#include "formats/files/provenance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace nearfield::fit {
+namespace {
+
+// Rows about the brightest one, in which smoothness is chosen.
+TileRange bright_rows(const MeasuredTexels& texels) {
+    constexpr int kRows = 12;
+    int brightest = 0;
+    double most = -1;
+    for (int row = 0; row < texels.texels().y; ++row) {
+        const TileInput tile = texels.read({row, 1}, 0);
+        const auto count = static_cast<std::ptrdiff_t>(texels.positions()) * texels.texels().x;
+        const double sum = std::accumulate(tile.value.begin(), tile.value.begin() + count, 0.0);
+        if (sum > most) {
+            most = sum;
+            brightest = row;
+        }
+    }
+    const int rows = std::min(kRows, texels.texels().y);
+    return {std::clamp(brightest - rows / 2, 0, texels.texels().y - rows), rows};
+}
+
+double choose_smoothness(const MeasuredTexels& texels,
+                         const Design& design,
+                         double model_error_rel,
+                         const FitOptions& solve,
+                         SmoothnessCurve& curve) {
+    constexpr int kTexelsAsked = 50;  // of a row
+    SmoothnessOptions smoothness;
+    smoothness.texel_step = std::max(1, texels.texels().x / kTexelsAsked);
+    smoothness.folds = std::min(smoothness.folds, texels.positions());
+    const TileRange rows = bright_rows(texels);
+    curve = cross_validate(design, solve, smoothness, rows, texels.read(rows, model_error_rel));
+    return curve.lambda[curve.best];
+}
+
+// Where nothing was seen a coefficient could be as bright as any.
+void bound_sigma(Slab& slab) {
+    const float brightest = *std::max_element(slab.coeffs.begin(), slab.coeffs.end());
+    for (float& sigma : slab.sigma)
+        if (!std::isfinite(sigma))
+            sigma = brightest;
+}
+
+void store(const TileResult& tile, Slab& slab, CaptureFit& fit) {
+    const auto width = static_cast<std::size_t>(slab.texels.x);
+    const std::size_t first = static_cast<std::size_t>(tile.rows.first_row) * width;
+    const std::size_t count = static_cast<std::size_t>(tile.rows.row_count) * width;
+    const auto images =
+        static_cast<std::size_t>(slab.channels) * static_cast<std::size_t>(slab.image_count());
+    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
+        for (std::size_t image = 0; image < images && !from.empty(); ++image)
+            std::copy_n(
+                from.begin() + static_cast<std::ptrdiff_t>(image * count), count,
+                to.begin() + static_cast<std::ptrdiff_t>(image * slab.texel_count() + first));
+    };
+    copy(tile.coeffs, slab.coeffs);
+    copy(tile.sigma, slab.sigma);
+    for (std::size_t t = 0; t < count; ++t) {
+        const int freedom = tile.valid_count[t] - tile.free_count[t];
+        fit.chi_square[first + t] =
+            freedom > 0 ? tile.chi_square[t] / static_cast<float>(freedom) : 0;
+    }
+}
+
+}  // namespace
+
+CaptureFit solve_capture(const RectifiedCapture& capture,
+                         const Optics& optics,
+                         const CaptureFitOptions& options) {
+    const double start_s = now_s();
+    const MeasuredTexels& texels = capture.texels;
+    const Design design = make_design(capture.planes, optics);
+    CaptureFit fit = capture.seen;
+    Slab slab = capture.planes;
+    FitOptions solve;
+    solve.channels = texels.channels();
+    solve.solve.wants_sigma = true;
+    solve.keeps_light = true;
+    solve.tile_bytes = options.tile_bytes;
+    fit.lambda = options.lambda ? *options.lambda
+                                : choose_smoothness(texels, design, options.model_error_rel, solve,
+                                                    fit.smoothness);
+    solve.solve.lambda = fit.lambda;
+    const double chosen_s = now_s();
+    fit.smoothness_s = chosen_s - start_s;
+    slab.coeffs.resize(static_cast<std::size_t>(slab.channels) *
+                       static_cast<std::size_t>(slab.image_count()) * slab.texel_count());
+    slab.sigma.resize(slab.coeffs.size());
+    fit.chi_square.resize(slab.texel_count());
+    fit.report = solve_lightfield(
+        design, solve, [&](TileRange rows) { return texels.read(rows, options.model_error_rel); },
+        [&](const TileResult& tile) { store(tile, slab, fit); },
+        [&](double fraction) {
+            if (options.progress)
+                options.progress(kMergeShare + (1 - kMergeShare) * fraction, "solve");
+        });
+    bound_sigma(slab);
+    fit.solve_s = now_s() - chosen_s;
+    fit.lightfield.scale_sigma_rel = capture.scale_sigma_rel;
+    fit.lightfield.slabs = {std::move(slab)};
+    return fit;
+}
+
+}  // namespace nearfield::fit

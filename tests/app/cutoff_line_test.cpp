@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cutoff_line.h"
+
+#include "sample_data/headlight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace nearfield::app {
+namespace {
+
+// Proves the place on a step that is known: a logistic fall of log E is steepest in its middle,
+// wherever that lies between the steps of the scan.
+TEST(CutoffLine, IsWhereLightFallsFastest) {
+    for (const double middle_deg : {-0.573, 0.0, 0.31, 1.234}) {
+        const BeamScan scan = [&](double /*tangent_x*/, double tangent_y) {
+            const double above = (glm::degrees(std::atan(tangent_y)) - middle_deg) / 0.1;
+            return std::exp(3.0 - 3.0 * std::tanh(above));
+        };
+        const auto found = cutoff_tangent(scan, 0.1);
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(glm::degrees(std::atan(*found)), middle_deg, 0.004) << middle_deg;
+    }
+}
+
+TEST(CutoffLine, DarknessHasNone) {
+    EXPECT_FALSE(cutoff_tangent([](double, double) { return 0.0; }, 0.0));
+}
+
+// Proves that it is the headlight's own line, level on the left and rising on the right, where the
+// formula puts it: within half of its step's width (0.25 degrees in red, 0.33 in green).
+TEST(CutoffLine, FindsTheHeadlights) {
+    const sample_data::Headlight headlight = sample_data::make_headlight();
+    const BeamScan scan = [&](double x, double y) {
+        return model::luminance(sample_data::intensity(headlight, {x, y, 1.0}));
+    };
+    const auto level = cutoff_tangent(scan, 0.15), rise = cutoff_tangent(scan, -0.1);
+    ASSERT_TRUE(level && rise);
+    const double raised = sample_data::kCutoffTangent + std::tan(glm::radians(15.0)) * 0.1;
+    EXPECT_NEAR(glm::degrees(std::atan(*level)),
+                glm::degrees(std::atan(sample_data::kCutoffTangent)), 0.17);
+    EXPECT_NEAR(glm::degrees(std::atan(*rise)), glm::degrees(std::atan(raised)), 0.17);
+}
+
+}  // namespace
+}  // namespace nearfield::app
