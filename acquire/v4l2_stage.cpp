@@ -17,6 +17,8 @@ int subject_code(ShotKind kind) {
             return 3;
         case ShotKind::Filter:
             return 5;
+        case ShotKind::Blocked:
+            return 6;
         case ShotKind::Dark:
         case ShotKind::Light:
         case ShotKind::Reference:

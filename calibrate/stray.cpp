@@ -112,7 +112,8 @@ StrayResult stray_of(std::span<const Bracket> brackets,
     std::vector<std::vector<float>> blocks;
     std::vector<double> held_back;
     double open = 0, longest_s = 0;
-    // All positions add up to the open lamp times what neighboring profiles add up to, and the peak.
+    // All positions add up to the open lamp times what neighboring profiles add up to, and the
+    // peak.
     const double overlap = model::overlap(*filter) * model::overlap(*filter);
     for (const Bracket& bracket : brackets) {
         const auto light = [&](const capture::FrameRecord& record) {

@@ -58,7 +58,7 @@ struct PhotometerPlan {
     /// Spectral mismatch correction, of a certificate for this lamp behind this filter: what a
     /// reading is multiplied by.
     double correction = 1;
-    double sigma_rel = 0;             // random, of a reading
+    double sigma_rel = 0;     // random, of a reading
     double mismatch_rel = 0;  // systematic: what the correction leaves, and its own calibration
 };
 
@@ -82,8 +82,8 @@ struct Plan {
     BracketPlan bracket;
     int repeats = 1;
     int blocked = 0;  // at each of the bracket's exposures, a plate instead of the filter
-    int darks = 4;  // for every exposure, lamp off
-    int flats = 0;  // of an even source before the lens, at each of their exposures
+    int darks = 4;    // for every exposure, lamp off
+    int flats = 0;    // of an even source before the lens, at each of their exposures
     std::vector<double> flat_exposures_us;  // ascending; empty: the bracket's middle one
     std::optional<BoardPlan> board;         // none: its views tell nothing
     std::vector<TargetPlane> views;         // of the board
@@ -118,9 +118,9 @@ Plan plan_from(const JsonField& document);
 Json json_of(const Plan& plan);
 
 /// All frames of a plan in the order in which they are taken: targets, flats, filter views, darks
-/// at every exposure of them and of the bracket, the blocked lamp, then positions in serpentine order with their
-/// exposures and repeats, and a look at the reference every `drift_every` positions. The bracket
-/// must be known.
+/// at every exposure of them and of the bracket, the blocked lamp, then positions in serpentine
+/// order with their exposures and repeats, and a look at the reference every `drift_every`
+/// positions. The bracket must be known.
 std::vector<Shot> shots_of(const Plan& plan);
 
 /// "light_x003_y002_1600us_r000": names a shot for people and in files' names.

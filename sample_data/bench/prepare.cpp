@@ -74,8 +74,8 @@ void prepare_photometer(const RayLamp& lamp, PreparedBench& prepared) {
     for (std::size_t m = 0; m < prepared.photometer_lx.size(); ++m)
         prepared.photometer_lx[m] =
             strayed.positions[m] + (is_filter ? line.positions[m]
-                                    : hole_light(light, place, photometer.normal, color,
-                                                 prepared.places.position_m[m])[0]);
+                                              : hole_light(light, place, photometer.normal, color,
+                                                           prepared.places.position_m[m])[0]);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ V4l2Node::V4l2Node(TestBed& bed, LabState& lab, int number)
     constexpr std::uint32_t kInteger = V4L2_CTRL_TYPE_INTEGER, kMenu = V4L2_CTRL_TYPE_MENU;
     controls_ = {
         {V4L2_CID_GAIN, "Gain", kInteger, 0, 24, 0},
-        {kSubject, "Lab Subject", kInteger, 0, 5, 0},
+        {kSubject, "Lab Subject", kInteger, 0, 6, 0},
         {kTargetView, "Lab Target View", kInteger, 0, std::max(0, lab.lab().target_views - 1), 0},
         {kShot, "Lab Shot", kInteger, 0, kMostShot, 0},
         {V4L2_CID_EXPOSURE_AUTO, "Auto Exposure", kMenu, 0, 3, 3},
