@@ -23,7 +23,7 @@ std::string text_of(const std::string& path) {
 TEST(BenchFile, SampleBenchesAreReadAndWrittenUnchanged) {
     for (const std::string name : {"bench_near.json", "bench_far.json"}) {
         const Bench bench = read_bench(kFolder + name);
-        EXPECT_EQ(bench.filter.grid, glm::ivec2(9, 7)) << name;
+        EXPECT_EQ(bench.filter.grid, glm::ivec2(11, 9)) << name;
         EXPECT_EQ(bench.targets.views.size(), 30U) << name;
         write_bench(bench, "again.json");
         EXPECT_EQ(to_json(read_bench("again.json")), to_json(bench)) << name;
