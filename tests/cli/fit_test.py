@@ -115,7 +115,7 @@ class Lab(ProgramTest):
             self.assertTrue(-1 < closure[key] < 10, f"{key}: {closure[key]}")
         # A coarse bench: an order of magnitude away from nonsense, not the sample benches' closeness.
         self.assertLess(abs(closure["flux_rel"]), 0.03)
-        self.assertLess(closure["irradiance_rms"], 0.1)
+        self.assertLess(closure["irradiance_rms"], 0.2)
         self.assertEqual(report["error_budget"][0]["source"], "all")
         for name in ("report.html", "calibration.html", "fit.html", "lamp.lightfield.exr", "picture.png"):
             self.assertTrue(pathlib.Path("out", name).exists(), name)
