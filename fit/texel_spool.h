@@ -3,8 +3,11 @@
 
 #include "fit/rectify.h"
 #include "fit/stream.h"
+#include "formats/files/unnamed_file.h"
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace nearfield::fit {
 
@@ -14,11 +17,6 @@ class TexelSpool {
   public:
     /// Throws Error naming the folder if it cannot be written.
     TexelSpool(const std::string& folder, glm::ivec2 texels, int channels, int positions);
-    ~TexelSpool();
-    TexelSpool(TexelSpool&& other) noexcept;
-    TexelSpool(const TexelSpool&) = delete;
-    TexelSpool& operator=(const TexelSpool&) = delete;
-    TexelSpool& operator=(TexelSpool&&) = delete;
 
     /// Throws Error where the disk is full.
     void put(int position, int channel, const RectifiedImage& image);
@@ -29,11 +27,10 @@ class TexelSpool {
     std::size_t texel_count() const;
     std::uint64_t offset(int position, int channel, bool is_variance, int row) const;
 
-    std::string folder_;
     glm::ivec2 texels_;
-    int channels_, positions_;
+    int positions_;
     std::vector<bool> is_put_;  // [channel * positions + position]
-    int descriptor_ = -1;
+    std::unique_ptr<UnnamedFile> file_;
 };
 
 }  // namespace nearfield::fit
