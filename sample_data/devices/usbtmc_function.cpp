@@ -115,7 +115,7 @@ std::vector<std::uint8_t> Instrument::next_message() {
         std::min({answer_.size(), asked_bytes_, faults.splits ? kSplitMessage : answer_.size()});
     const std::uint8_t tag = is_to_another ? tag_ ^ 0x55U : tag_;
     std::vector<std::uint8_t> bytes{kRequestIn, tag, static_cast<std::uint8_t>(~tag), 0};
-    append(bytes, size, 4);
+    append(bytes, take_one(faults.endless_answers) ? 0xFFFFFFFFU : size, 4);
     append(bytes, size == answer_.size() ? kEndOfMessage : 0, 4);
     bytes.insert(bytes.end(), answer_.begin(), answer_.begin() + static_cast<std::ptrdiff_t>(size));
     bytes.resize((bytes.size() + 3) / 4 * 4);

@@ -15,6 +15,7 @@ struct InstrumentFaults {
     std::atomic<int> silent_answers{0};   // so many next answers do not come
     std::atomic<int> stalled_answers{0};  // so many next answers stall the endpoint
     std::atomic<int> wrong_tags{0};       // so many next answers are to another question
+    std::atomic<int> endless_answers{0};  // so many next answers claim 4 GiB
     std::atomic<bool> is_mute{false};     // no answer comes, clearing does not help
     std::atomic<bool> splits{false};      // answers come in transfers and messages of few bytes
 };

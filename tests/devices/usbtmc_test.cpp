@@ -67,6 +67,9 @@ TEST_F(UsbInstrument, ConfusedItIsClearedAndAskedAgain) {
     EXPECT_EQ(meter.number("MEAS:ILL?"), 123.5);
     lab_.luxmeter.faults.silent_answers = 1;
     EXPECT_EQ(meter.number("MEAS:ILL?"), 123.5);
+    lab_.luxmeter.faults.endless_answers = 2;  // asked again, the same: lost, and why
+    EXPECT_THAT(complaint<DeviceLost>([&] { meter.query("MEAS:ILL?"); }),
+                HasSubstr("an answer of 4294967295 bytes"));
 }
 
 TEST_F(UsbInstrument, SilentItIsLost) {
