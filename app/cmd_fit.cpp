@@ -40,7 +40,7 @@ Provenance provenance_of(const FitCommand& command, const fit::CaptureFit& resul
         {"extent-m", fmt::format("{},{},{},{}", slab.s_min_m.x, slab.s_min_m.y, slab.s_max_m.x,
                                  slab.s_max_m.y)},
         {"lambda", fmt::format("{:g}", result.lambda)},
-        {"model-error-rel", fmt::format("{:g}", command.options.model_error_rel)},
+        {"model-error-rel", fmt::format("{:g}", result.model_error_rel)},
         {"seed", fmt::format("{}", command.options.seed)}};
     provenance.inputs = {describe_input(command.capture + "/capture.json"),
                          describe_input(command.capture + "/log.jsonl"),
@@ -68,7 +68,8 @@ std::string summary(const fit::CaptureFit& result) {
     const double flux_lm = model::luminance(model::flux(result.lightfield));
     return fmt::format(
         "{} positions, {} x {} texels on {:.3f} x {:.3f} m, resolution {:.2f} mm\n"
-        "smoothness {:g}; chi-square {:.2f} by degree of freedom; KKT residual at most {:.1e}\n"
+        "smoothness {:g}; error of rig and basis {:.2g} %; chi-square {:.2f} by degree of freedom; "
+        "KKT residual at most {:.1e}\n"
         "flux {:.5g} lm +- {:.2g} independent, +- {:.2g} % common; {:.2g} % of the light beside "
         "the "
         "extent\n"
@@ -76,8 +77,8 @@ std::string summary(const fit::CaptureFit& result) {
         "merge {:.1f} s, smoothness {:.1f} s, solve {:.1f} s\n",
         result.positions, slab.texels.x, slab.texels.y, slab.s_max_m.x - slab.s_min_m.x,
         slab.s_max_m.y - slab.s_min_m.y, 1e3 * result.resolution_m, result.lambda,
-        result.report.reduced_chi_square(), result.report.kkt_worst, flux_lm,
-        model::flux_sigma_y(result.lightfield), 100 * result.lightfield.scale_sigma_rel,
+        100 * result.model_error_rel, result.report.reduced_chi_square(), result.report.kkt_worst,
+        flux_lm, model::flux_sigma_y(result.lightfield), 100 * result.lightfield.scale_sigma_rel,
         100 * result.outside_share, beside_filter(result), result.merge_s, result.smoothness_s,
         result.solve_s);
 }
@@ -169,8 +170,10 @@ void add_fit(CLI::App& app) {
                "of the brightest light: what still counts as lit");
     add_number(*sub, "--lambda", c->options.lambda, 0.0, 1e6, "N",
                "smoothness; without it by cross-validation over positions");
-    add_number(*sub, "--model-error-rel", c->options.model_error_rel, 0.0, 1.0, "SHARE",
-               "what rig and basis get wrong, of a texel's brightest position; added to sigma");
+    add_number(
+        *sub, "--model-error-rel", c->options.model_error_rel, 0.0, 1.0, "SHARE",
+        "what rig and basis get wrong, of a texel's brightest position, added to sigma; without "
+        "it as large as positions are foretold wrong by the others");
     add_number(*sub, "--flux-lm", c->flux_lm, 0.0, 1e12, "LM",
                "flux that was measured otherwise (an integrating sphere), to be compared");
     add_number(*sub, "--flux-limit-rel", c->flux_limit_rel, 0.0, 10.0, "SHARE",

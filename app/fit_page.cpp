@@ -192,6 +192,8 @@ Section facts_section(const fit::CaptureFit& fit) {
     row("blur of directions",
         fmt::format("{:.2f} degrees: a basis function's pitch over the planes' distance",
                     57.29578 * slab.pitch_m.x / slab.delta_m));
+    row("error of rig and basis, in every sigma",
+        fmt::format("{:.2g} % of a texel's brightest position", 100 * fit.model_error_rel));
     row("positions", fmt::format("{}, {} missing", fit.positions, fit.missing_positions));
     row("saturated in all exposures", fmt::format("{:.3g} % of pixels", 100 * fit.saturated_share));
     row("light beside the extent", fmt::format("{:.2g} %", 100 * fit.outside_share));

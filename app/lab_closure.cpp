@@ -157,7 +157,7 @@ Closure closure_of(const LabTruth& truth,
                    const fit::CaptureFit& fit) {
     const TrueTexels texels = true_texels(truth, capture.planes);
     const auto fit_truth = [&](const fit::Optics& optics) {
-        return fit_true_texels(texels, capture.planes, optics, fit.lambda, options.model_error_rel);
+        return fit_true_texels(texels, capture.planes, optics, fit.lambda, fit.model_error_rel);
     };
     const LightField noise_free = fit_truth(true_optics(truth));
     Closure closure;
@@ -168,8 +168,7 @@ Closure closure_of(const LabTruth& truth,
         const model::Receiver at = facing_lamp(receiver.at_slab_m, rig_delta_m);
         receiver.fitted_lx = irradiance_lx(fit.lightfield, at);
         receiver.noise_free_lx = irradiance_lx(noise_free, at);
-        receiver.sigma_lx = std::hypot(model::irradiance_sigma_y(fit.lightfield, at),
-                                       fit.lightfield.scale_sigma_rel * receiver.fitted_lx);
+        receiver.sigma_lx = model::irradiance_sigma_y(fit.lightfield, at);
     });
     summarize(closure);
     closure.flux_rel = flux_lm(fit.lightfield) / true_flux_lm(truth) - 1;
@@ -179,6 +178,7 @@ Closure closure_of(const LabTruth& truth,
 
     fit::CaptureFitOptions same = options;
     same.lambda = fit.lambda;
+    same.model_error_rel = fit.model_error_rel;
     same.progress = {};
     const auto add = [&](const std::string& what, const LightField& lightfield) {
         closure.budget.push_back(

@@ -6,8 +6,9 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace nearfield::fit {
 namespace {
@@ -24,42 +25,103 @@ Terms terms_at(glm::ivec2 texels, std::size_t t) {
     return Terms{1.0, x, y, x * x, x * y, y * y};
 }
 
-}  // namespace
+struct Parabola {
+    Terms at = Terms::Zero();
+    Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> factor;  // of its normal equations
+};
 
-BlockedLight smooth_light(const RectifiedImage& image, glm::ivec2 texels) {
+Parabola fit_parabola(const RectifiedImage& image,
+                      glm::ivec2 texels,
+                      const std::vector<double>& trust) {
     Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
     Terms right = Terms::Zero();
     int known = 0;
     for (std::size_t t = 0; t < image.value.size(); ++t) {
-        if (std::isinf(image.variance[t]))
+        if (!(trust[t] > 0.0))
             continue;
         const Terms terms = terms_at(texels, t);
-        const double weight = 1.0 / double(image.variance[t]);
+        const double weight = trust[t] / double(image.variance[t]);
         normal += weight * terms * terms.transpose();
         right += weight * double(image.value[t]) * terms;
         ++known;
     }
-    const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> factor(normal);
-    if (known < kTerms || factor.info() != Eigen::Success || !factor.isPositive())
+    Parabola parabola;
+    parabola.factor.compute(normal);
+    if (known < kTerms || parabola.factor.info() != Eigen::Success || !parabola.factor.isPositive())
         throw Error{"light beside the filter cannot be found", "frames with the filter blocked",
                     "texels that are not saturated", fmt::format("{}", known)};
-    const Terms parabola = factor.solve(right);
+    parabola.at = parabola.factor.solve(right);
+    return parabola;
+}
+
+// In sigmas; infinite where nothing is known.
+std::vector<double> standardized_residuals(const RectifiedImage& image,
+                                           glm::ivec2 texels,
+                                           const Parabola& parabola) {
+    std::vector<double> residuals;
+    for (std::size_t t = 0; t < image.value.size(); ++t) {
+        const double off = double(image.value[t]) - parabola.at.dot(terms_at(texels, t));
+        residuals.push_back(std::isinf(image.variance[t])
+                                ? std::numeric_limits<double>::infinity()
+                                : off / std::sqrt(double(image.variance[t])));
+    }
+    return residuals;
+}
+
+double median_size(const std::vector<double>& residuals) {
+    std::vector<double> sizes;
+    for (const double residual : residuals)
+        if (std::isfinite(residual))
+            sizes.push_back(std::abs(residual));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle;
+}
+
+// Tukey's biweights (Beaton and Tukey 1974): texels beside the screen show no light at all, and
+// squares would bend the parabola towards them.
+std::vector<double> biweights(const std::vector<double>& residuals) {
+    constexpr double kEnd = 4.685;  // 95 % as good as squares where all is gaussian
+    constexpr double kSigmaOfMedian = 1.4826;
+    const double scale = kEnd * std::max(1.0, kSigmaOfMedian * median_size(residuals));
+    std::vector<double> weights;
+    for (const double residual : residuals) {
+        const double x = std::min(1.0, std::abs(residual) / scale);
+        weights.push_back((1 - x * x) * (1 - x * x));
+    }
+    return weights;
+}
+
+}  // namespace
+
+BlockedLight smooth_light(const RectifiedImage& image, glm::ivec2 texels) {
+    std::vector<double> trust(image.value.size());
+    for (std::size_t t = 0; t < trust.size(); ++t)
+        trust[t] = std::isinf(image.variance[t]) ? 0.0 : 1.0;
+    constexpr int kRounds = 20;
+    Parabola parabola = fit_parabola(image, texels, trust);
+    for (int round = 0; round < kRounds; ++round) {
+        trust = biweights(standardized_residuals(image, texels, parabola));
+        parabola = fit_parabola(image, texels, trust);
+    }
     BlockedLight light;
+    double trusted = 0;
     Terms mean_terms = Terms::Zero();
+    const std::vector<double> residuals = standardized_residuals(image, texels, parabola);
     for (std::size_t t = 0; t < image.value.size(); ++t) {
         const Terms terms = terms_at(texels, t);
-        const double value = parabola.dot(terms);
         mean_terms += terms / static_cast<double>(image.value.size());
-        light.lux.push_back(static_cast<float>(value));
-        const double off = double(image.value[t]) - value;
-        if (std::isfinite(image.variance[t]))
-            light.chi_square += off * off / double(image.variance[t]);
+        light.lux.push_back(static_cast<float>(parabola.at.dot(terms)));
+        if (trust[t] > 0.0) {
+            light.chi_square += trust[t] * residuals[t] * residuals[t];
+            trusted += trust[t];
+        }
     }
-    light.chi_square /= std::max(1, known - kTerms);
-    light.mean_lx = parabola.dot(mean_terms);
+    light.chi_square /= std::max(1.0, trusted - kTerms);
+    light.mean_lx = parabola.at.dot(mean_terms);
     // Where a parabola does not hold it all, sigma is that of what is left.
-    light.sigma_lx =
-        std::sqrt(std::max(1.0, light.chi_square) * mean_terms.dot(factor.solve(mean_terms)));
+    light.sigma_lx = std::sqrt(std::max(1.0, light.chi_square) *
+                               mean_terms.dot(parabola.factor.solve(mean_terms)));
     return light;
 }
 

@@ -24,7 +24,8 @@ std::vector<BlockedLight> blocked_light(const Measurement& measurement,
                                         const Rectifier& rectifier,
                                         glm::ivec2 texels);
 
-/// The least-squares parabola of a picture in x and y, weighed by variance; infinite: left out.
+/// The parabola of a picture in x and y, weighed by variance; infinite: left out. Texels that lie
+/// off it, as beside the screen, lose their weight.
 /// Throws Error if fewer than six texels are known.
 BlockedLight smooth_light(const RectifiedImage& image, glm::ivec2 texels);
 

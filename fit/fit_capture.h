@@ -24,8 +24,10 @@ struct CaptureFitOptions {
     double dark_share = 1e-3;      // of the brightest light: what still counts as lit
     std::optional<double> lambda;  // smoothness; none: by cross-validation
     /// What rig and basis get wrong, of a texel's brightest position: added to every measurement's
-    /// sigma. Without it dark positions, whose counts are known best, would rule the bright ones.
-    double model_error_rel = 0.003;
+    /// sigma. Without it dark positions, whose counts are known best, would rule the bright ones,
+    /// and the more so the less noise there is. None: as large as the error with which positions
+    /// are foretold by the others.
+    std::optional<double> model_error_rel;
     std::uint64_t seed = 1;
     bool wants_color = true;  // of a camera with colors; else luminance alone
     double tile_bytes = 256e6;
@@ -45,6 +47,7 @@ struct CaptureFit {
     FitReport report;
     SmoothnessCurve smoothness;  // empty where lambda was given
     double lambda = 0;
+    double model_error_rel = 0;  // given or found
     int positions = 0, missing_positions = 0;
     double drift_rel = 0;            // largest, of the lamp; corrected
     double saturated_share = 0;      // of pixels, in all exposures

@@ -28,18 +28,42 @@ TileRange bright_rows(const MeasuredTexels& texels) {
     return {std::clamp(brightest - rows / 2, 0, texels.texels().y - rows), rows};
 }
 
-double choose_smoothness(const MeasuredTexels& texels,
-                         const Design& design,
-                         double model_error_rel,
-                         const FitOptions& solve,
-                         SmoothnessCurve& curve) {
+SmoothnessCurve cross_validate_some(const MeasuredTexels& texels,
+                                    const Design& design,
+                                    const FitOptions& solve,
+                                    const std::optional<double>& lambda,
+                                    double model_error_rel) {
     constexpr int kTexelsAsked = 50;  // of a row
     SmoothnessOptions smoothness;
+    if (lambda)
+        smoothness.lambdas = {*lambda};
     smoothness.texel_step = std::max(1, texels.texels().x / kTexelsAsked);
     smoothness.folds = std::min(smoothness.folds, texels.positions());
     const TileRange rows = bright_rows(texels);
-    curve = cross_validate(design, solve, smoothness, rows, texels.read(rows, model_error_rel));
-    return curve.lambda[curve.best];
+    return cross_validate(design, solve, smoothness, rows, texels.read(rows, model_error_rel));
+}
+
+// The error that makes chi-square of foretold measurements one by measurement, and the smoothness
+// that foretells best with it. Both depend on each other: from least error upwards.
+void choose_model_error(const MeasuredTexels& texels,
+                        const Design& design,
+                        const FitOptions& solve,
+                        const std::optional<double>& lambda,
+                        CaptureFit& fit) {
+    constexpr double kLeast = 1e-3, kMost = 1;
+    constexpr double kNear = 1.1;
+    constexpr int kRounds = 8;
+    fit.model_error_rel = kLeast;
+    for (int round = 0; round < kRounds; ++round) {
+        fit.smoothness = cross_validate_some(texels, design, solve, lambda, fit.model_error_rel);
+        const double chi_square = fit.smoothness.chi_square[fit.smoothness.best];
+        const double wanted =
+            std::clamp(fit.model_error_rel * std::sqrt(chi_square), kLeast, kMost);
+        const double step = wanted / fit.model_error_rel;
+        if (step < kNear && step > 1 / kNear)
+            break;
+        fit.model_error_rel = wanted;
+    }
 }
 
 // Where nothing was seen a coefficient could be as bright as any.
@@ -86,9 +110,16 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
     solve.solve.wants_sigma = true;
     solve.keeps_light = true;
     solve.tile_bytes = options.tile_bytes;
-    fit.lambda = options.lambda ? *options.lambda
-                                : choose_smoothness(texels, design, options.model_error_rel, solve,
-                                                    fit.smoothness);
+    if (!options.model_error_rel) {
+        choose_model_error(texels, design, solve, options.lambda, fit);
+    } else {
+        fit.model_error_rel = *options.model_error_rel;
+        if (!options.lambda)
+            fit.smoothness = cross_validate_some(texels, design, solve, {}, fit.model_error_rel);
+    }
+    if (options.lambda)
+        fit.smoothness = {};
+    fit.lambda = options.lambda ? *options.lambda : fit.smoothness.lambda[fit.smoothness.best];
     solve.solve.lambda = fit.lambda;
     const double chosen_s = now_s();
     fit.smoothness_s = chosen_s - start_s;
@@ -97,7 +128,7 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
     slab.sigma.resize(slab.coeffs.size());
     fit.chi_square.resize(slab.texel_count());
     fit.report = solve_lightfield(
-        design, solve, [&](TileRange rows) { return texels.read(rows, options.model_error_rel); },
+        design, solve, [&](TileRange rows) { return texels.read(rows, fit.model_error_rel); },
         [&](const TileResult& tile) { store(tile, slab, fit); },
         [&](double fraction) {
             if (options.progress)

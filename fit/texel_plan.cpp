@@ -55,6 +55,61 @@ double last_right(const IsRight& is_right) {
     return low;
 }
 
+// Neighboring pixels together, of which noise says less than of one.
+constexpr int kBlock_px = 4;
+
+struct Blocks {
+    glm::ivec2 count{0};
+    std::vector<double> mean, mean_sigma;  // [row][column]; a block without known pixels is dark
+
+    bool is_lit(glm::ivec2 at, double limit) const {
+        constexpr double kSure = 3;  // sigmas
+        if (at.x < 0 || at.y < 0 || at.x >= count.x || at.y >= count.y)
+            return false;
+        const auto k = static_cast<std::size_t>(at.y * count.x + at.x);
+        return mean[k] > limit && mean[k] > kSure * mean_sigma[k];
+    }
+};
+
+void add_block(std::span<const float> light, glm::ivec2 size_px, glm::ivec2 at, Blocks& blocks) {
+    const glm::ivec2 min_px = kBlock_px * at, max_px = glm::min(min_px + kBlock_px, size_px);
+    double count = 0, sum = 0, square = 0;
+    for (int y = min_px.y; y < max_px.y; ++y)
+        for (int x = min_px.x; x < max_px.x; ++x) {
+            const auto value = double(light[static_cast<std::size_t>(y * size_px.x + x)]);
+            if (!std::isfinite(value))
+                continue;
+            count += 1;
+            sum += value;
+            square += value * value;
+        }
+    const double mean = count > 0 ? sum / count : 0;
+    const double variance = count > 0 ? std::max(0.0, square / count - mean * mean) : 0;
+    blocks.mean.push_back(mean);
+    blocks.mean_sigma.push_back(std::sqrt(variance / std::max(1.0, count - 1)));
+}
+
+Blocks blocks_of(std::span<const float> light, glm::ivec2 size_px) {
+    Blocks blocks;
+    blocks.count = (size_px + kBlock_px - 1) / kBlock_px;
+    for (int y = 0; y < blocks.count.y; ++y)
+        for (int x = 0; x < blocks.count.x; ++x)
+            add_block(light, size_px, {x, y}, blocks);
+    return blocks;
+}
+
+// Light has neighbors; of ten thousand dark blocks some are beyond three sigmas, but not together.
+bool is_in_light(const Blocks& blocks, glm::ivec2 at, double limit) {
+    constexpr int kNeighbors = 2;
+    if (!blocks.is_lit(at, limit))
+        return false;
+    int lit = 0;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+            lit += blocks.is_lit(at + glm::ivec2(x, y), limit) ? 1 : 0;
+    return lit > kNeighbors;  // itself included
+}
+
 }  // namespace
 
 std::optional<glm::dvec2> seen_px(const rig::Rig& rig, glm::dvec2 s_m) {
@@ -115,28 +170,25 @@ Extent lit_extent(const rig::Rig& rig,
                   std::span<const float> light,
                   double dark_share) {
     constexpr double kMargin = 0.03;
-    constexpr double kBrightShare = 0.999;  // of pixels: a few hot ones do not count
-    std::vector<float> sorted(light.begin(), light.end());
-    std::erase_if(sorted, [](float value) { return !(value > 0.0F); });
-    if (sorted.empty())
+    const glm::ivec2 size_px = rig.lens->size_px;
+    const Blocks blocks = blocks_of(light, size_px);
+    const double brightest = *std::max_element(blocks.mean.begin(), blocks.mean.end());
+    if (!(brightest > 0.0))
         throw Error{"no light in the capture", "positions", "pixels brighter than dark", "none"};
-    const auto bright = sorted.begin() + static_cast<std::ptrdiff_t>(
-                                             kBrightShare * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), bright, sorted.end());
-    const double limit = dark_share * double(*bright);
-    const auto width = static_cast<std::size_t>(rig.lens->size_px.x);
     Extent lit{visible.max_m, visible.min_m};
-    for (std::size_t k = 0; k < light.size(); ++k) {
-        if (!(double(light[k]) > limit))
-            continue;
-        const std::size_t row = k / width;
-        const glm::dvec2 at_px(static_cast<double>(k % width) + 0.5,
-                               static_cast<double>(row) + 0.5);
-        if (const auto at_m = on_s(rig, at_px)) {
-            lit.min_m = glm::min(lit.min_m, *at_m);
-            lit.max_m = glm::max(lit.max_m, *at_m);
+    for (int y = 0; y < blocks.count.y; ++y)
+        for (int x = 0; x < blocks.count.x; ++x) {
+            if (!is_in_light(blocks, {x, y}, dark_share * brightest))
+                continue;
+            for (const glm::ivec2 corner :
+                 {glm::ivec2(0), glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(1)}) {
+                const glm::ivec2 at_px = kBlock_px * (glm::ivec2(x, y) + corner);
+                if (const auto at_m = on_s(rig, glm::dvec2(glm::min(at_px, size_px)))) {
+                    lit.min_m = glm::min(lit.min_m, *at_m);
+                    lit.max_m = glm::max(lit.max_m, *at_m);
+                }
+            }
         }
-    }
     const glm::dvec2 margin_m = kMargin * (lit.max_m - lit.min_m);
     lit.min_m = glm::max(lit.min_m - margin_m, visible.min_m);
     lit.max_m = glm::min(lit.max_m + margin_m, visible.max_m);

@@ -21,8 +21,8 @@ struct Extent {
 /// Throws Error if the camera does not see S.
 Extent visible_extent(const rig::Rig& rig);
 
-/// The part of `visible` outside of which pixels have less than `dark_share` of the brightest
-/// light; a margin of 3 % of its size about it.
+/// The part of `visible` outside of which blocks of 4 x 4 pixels have less than `dark_share` of the
+/// brightest one's light, or none that is surer than their noise; a margin of 3 % of its size.
 ///
 /// In   light: [row from the top][column], DN/s; NaN or negative: dark
 Extent lit_extent(const rig::Rig& rig,

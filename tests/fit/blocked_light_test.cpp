@@ -52,6 +52,20 @@ TEST(BlockedLight, AParabolaIsFoundInNoise) {
     EXPECT_LT(worst, 0.8);  // at a corner a parabola is known three times worse than in the mean
 }
 
+// Proves that texels beside the screen, which show no light at all, do not bend the parabola.
+TEST(BlockedLight, TexelsBesideTheScreenAreLeftOut) {
+    RectifiedImage image = noisy_parabola(0.1);
+    for (std::size_t t = 0; t < kCount; ++t)
+        if (t % 40 < 2 || t / 40 > 27)
+            image.value[t] -= static_cast<float>(parabola(t));
+    const BlockedLight light = smooth_light(image, kTexels);
+    double worst = 0;
+    for (std::size_t t = 0; t < kCount; ++t)
+        worst = std::max(worst, std::abs(double(light.lux[t]) - parabola(t)));
+    EXPECT_LT(worst, 0.06);
+    EXPECT_NEAR(light.chi_square, 1.0, 0.2);
+}
+
 TEST(BlockedLight, NothingKnownIsRefused) {
     RectifiedImage image = even(1.0F);
     std::fill(image.variance.begin(), image.variance.end(), kInfinity);

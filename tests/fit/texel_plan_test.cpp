@@ -46,19 +46,21 @@ TEST(TexelPlan, ACameraThatLooksAwayIsRefused) {
     EXPECT_THROW(visible_extent(rig), Error);
 }
 
-// Proves the lit part, with its margin of 3 %, and that pixels that are not known are dark.
+// Proves the lit part, with its margin of 3 %, that pixels that are not known are dark, and that
+// single bright pixels, as noise and hot ones, are no light.
 TEST(TexelPlan, TheLitPartIsFound) {
     const StraightBench bench;
     const rig::Rig rig = straight_rig(bench);
     std::vector<float> light(48 * 36, 0.001F);
-    for (int y = 10; y < 20; ++y)
+    for (int y = 12; y < 20; ++y)
         for (int x = 8; x < 28; ++x)
             light[static_cast<std::size_t>(y * 48 + x)] = 1.0F;
     light[0] = std::nanf("");
+    light[48 * 33 + 5] = light[48 * 2 + 45] = 0.7F;
     const Extent extent = lit_extent(rig, visible_extent(rig), light, 0.01);
-    // Centers of the outermost lit pixels; rows count from the top.
-    const glm::dvec2 low(0.004 * (8.5 - 24), 0.004 * (18 - 19.5));
-    const glm::dvec2 high(0.004 * (27.5 - 24), 0.004 * (18 - 10.5));
+    // Edges of the outermost lit pixels; rows count from the top.
+    const glm::dvec2 low(0.004 * (8 - 24), 0.004 * (18 - 20));
+    const glm::dvec2 high(0.004 * (28 - 24), 0.004 * (18 - 12));
     const glm::dvec2 margin = 0.03 * (high - low);
     EXPECT_LT(glm::length(extent.min_m - (low - margin)), 1e-9);
     EXPECT_LT(glm::length(extent.max_m - (high + margin)), 1e-9);
