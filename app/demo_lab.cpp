@@ -189,6 +189,8 @@ report::Section closure_section(const Closure& closure) {
         {"cut-off line 25 m away against the formula's, at most",
          fmt::format("{:.3f} degrees", closure.cutoff_deg)},
         {"the noise-free fit's", fmt::format("{:.3f} degrees", closure.cutoff_basis_deg)},
+        {"where log E falls fastest, which blur moves upwards",
+         fmt::format("{:.3f} degrees", closure.cutoff_gradient_deg)},
         {"distance of the planes", percent(closure.delta_rel)},
         {"the lamp's light when it was measured, over its nominal",
          fmt::format("{:.4f}", closure.lamp_factor)}};
@@ -225,6 +227,7 @@ Json closure_json(const Closure& closure) {
             {"basis_rms_truth", closure.basis_rms_truth},
             {"cutoff_deg", closure.cutoff_deg},
             {"cutoff_basis_deg", closure.cutoff_basis_deg},
+            {"cutoff_gradient_deg", closure.cutoff_gradient_deg},
             {"receivers", closure.receivers.size()},
             {"lamp_factor", closure.lamp_factor}};
 }

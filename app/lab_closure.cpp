@@ -101,11 +101,13 @@ ErrorSource source_of(const std::string& what,
 }
 
 // Largest difference of two cut-off lines, degrees.
-double cutoff_error_deg(const BeamScan& seen, const BeamScan& truth) {
+using FindLine = std::optional<double> (*)(const BeamScan& scan, double tangent_x);
+
+double cutoff_error_deg(FindLine line, const BeamScan& seen, const BeamScan& truth) {
     const std::vector<double> places = cutoff_places();
     std::vector<double> error_deg(places.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
-        const auto at = cutoff_tangent(seen, places[k]), real = cutoff_tangent(truth, places[k]);
+        const auto at = line(seen, places[k]), real = line(truth, places[k]);
         error_deg[k] = at && real ? glm::degrees(std::abs(std::atan(*at) - std::atan(*real))) : 90;
     });
     return *std::max_element(error_deg.begin(), error_deg.end());
@@ -129,8 +131,9 @@ void add_cutoff(const LabTruth& truth,
     const BeamScan real = [&](double x, double y) {
         return true_irradiance_lx(truth, on_wall(x, y));
     };
-    closure.cutoff_deg = cutoff_error_deg(scan(fitted), real);
-    closure.cutoff_basis_deg = cutoff_error_deg(scan(noise_free), real);
+    closure.cutoff_deg = cutoff_error_deg(edge_tangent, scan(fitted), real);
+    closure.cutoff_basis_deg = cutoff_error_deg(edge_tangent, scan(noise_free), real);
+    closure.cutoff_gradient_deg = cutoff_error_deg(gradient_tangent, scan(fitted), real);
 }
 
 void summarize(Closure& closure) {

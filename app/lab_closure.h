@@ -37,6 +37,7 @@ struct Closure {
     double lamp_factor = 1;           // the lamp's light at the reference's time over its nominal
     double cutoff_deg = 0;            // cut-off line 25 m away against the formula's, at most
     double cutoff_basis_deg = 0;      // the same of the noise-free fit
+    double cutoff_gradient_deg = 0;   // the same of where log E falls fastest, which blur moves
     std::vector<ErrorSource> budget;
     std::vector<ClosureReceiver> receivers;
 };

@@ -132,7 +132,7 @@ TrueTexels true_texels(const LabTruth& truth, const Slab& planes) {
     return texels;
 }
 
-fit::TileInput TrueTexels::read(fit::TileRange rows, double model_error_rel) const {
+fit::TileInput TrueTexels::read(fit::TileRange rows) const {
     constexpr double kLeastError = 1e-6;  // of light; an error of nothing has no weight
     const auto width = static_cast<std::size_t>(texels.x);
     const std::size_t count = static_cast<std::size_t>(rows.row_count) * width;
@@ -148,7 +148,7 @@ fit::TileInput TrueTexels::read(fit::TileRange rows, double model_error_rel) con
         double brightest = kLeastError;
         for (std::size_t k = 0; k < positions; ++k)
             brightest = std::max(brightest, double(tile.value[k * count + t]));
-        const double error = std::max(model_error_rel, kLeastError) * brightest;
+        const double error = kLeastError * brightest;
         for (std::size_t k = 0; k < positions; ++k)
             tile.variance[k * count + t] = static_cast<float>(error * error);
     }
@@ -169,9 +169,10 @@ LightField fit_true_texels(const TrueTexels& texels,
     fit::FitOptions options;
     options.solve.lambda = lambda;
     options.keeps_light = true;
+    options.model_error_rel = model_error_rel;
     fit::solve_lightfield(
         fit::make_design(slab, optics), options,
-        [&](fit::TileRange rows) { return texels.read(rows, model_error_rel); },
+        [&](fit::TileRange rows) { return texels.read(rows); },
         [&](const fit::TileResult& tile) {
             const auto width = static_cast<std::size_t>(slab.texels.x);
             const std::size_t count = static_cast<std::size_t>(tile.rows.row_count) * width;

@@ -41,7 +41,7 @@ struct TrueTexels {
     std::size_t positions = 0;
     std::vector<float> lux;  // [position][j][i]
 
-    fit::TileInput read(fit::TileRange rows, double model_error_rel) const;
+    fit::TileInput read(fit::TileRange rows) const;
 };
 
 /// Cost    seconds; 4 bytes a texel and position, twice while it is made.

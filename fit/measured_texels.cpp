@@ -56,7 +56,7 @@ double MeasuredTexels::held_back(int channel, int position) const {
     return std::clamp(1.0 - through / open, 0.0, 1.0);
 }
 
-TileInput MeasuredTexels::read(TileRange rows, double model_error_rel) const {
+TileInput MeasuredTexels::read(TileRange rows) const {
     TileInput tile = spool_.read(rows);
     const auto width = static_cast<std::size_t>(texels_.x);
     const std::size_t count = static_cast<std::size_t>(rows.row_count) * width;
@@ -69,15 +69,6 @@ TileInput MeasuredTexels::read(TileRange rows, double model_error_rel) const {
             for (std::size_t t = 0; t < count; ++t)
                 tile.value[(channel * positions + k) * count + t] -=
                     held * blocked_[channel].lux[first + t];
-        }
-    for (std::size_t channel = 0; channel < filter_peak_.size(); ++channel)
-        for (std::size_t t = 0; t < count; ++t) {
-            float brightest = 0.0F;
-            for (std::size_t k = 0; k < positions; ++k)
-                brightest = std::max(brightest, tile.value[(channel * positions + k) * count + t]);
-            const float error = static_cast<float>(model_error_rel) * brightest;
-            for (std::size_t k = 0; k < positions; ++k)
-                tile.variance[(channel * positions + k) * count + t] += error * error;
         }
     return tile;
 }

@@ -26,9 +26,8 @@ class MeasuredTexels {
     void put(int position, const std::vector<RectifiedImage>& channels);
 
     /// Rows of texels, the light beside the filter taken off. What is held back at a position is
-    /// what the plate holds back less what the position lets through. `model_error_rel` of a
-    /// texel's brightest position is added to the sigmas of all of them.
-    TileInput read(TileRange rows, double model_error_rel) const;
+    /// what the plate holds back less what the position lets through.
+    TileInput read(TileRange rows) const;
 
     /// Of the light that a plate holds back, what is still held back at a position.
     double held_back(int channel, int position) const;

@@ -1,34 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit/sigma.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace nearfield::fit {
 namespace {
 
 using LaneSums = std::array<double, kLanes>;
 
-// Diagonal of X (lambda D^T Q D)_FF X for eight columns of X, which stand in work.lanes.
-LaneSums penalty_sums(const Penalty& penalty,
-                      const Workspace& work,
-                      const std::vector<int>& place) {
-    LaneSums sums{};
-    for (std::size_t d = 0; d < work.normal.penalty_weight.size(); ++d) {
-        LaneSums difference{};
-        for (std::size_t p = 0; p < penalty.stencil.size(); ++p) {
-            const auto [first, step] = penalty.differences[d];
-            const int at = place[static_cast<std::size_t>(first + static_cast<int>(p) * step)];
-            for (std::size_t lane = 0; at >= 0 && lane < kLanes; ++lane)
-                difference[lane] +=
-                    penalty.stencil[p] * work.lanes[static_cast<std::size_t>(at) * kLanes + lane];
+// What of a texel's measurements is noise.
+struct Noise {
+    const TexelDesign& texel;
+    std::span<const double> weight, noise_share;
+};
+
+// Of eight vectors z over all coefficients, [m][lane]: sum over k of share_k w_k (G_k z)^2.
+LaneSums noise_through(const Noise& noise, const std::vector<double>& z) {
+    const auto& [texel, weight, noise_share] = noise;
+    using LaneArray = Eigen::Array<double, kLanes, 1>;
+    LaneArray sums = LaneArray::Zero();
+    for (int k = 0; k < texel.measurement_count; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        if (weight[at] == 0.0)
+            continue;
+        LaneArray seen = LaneArray::Zero();
+        const double* block = &texel.value[texel.block(k)];
+        const double* from = &z[static_cast<std::size_t>(texel.first[at]) * kLanes];
+        for (int row = 0; row < texel.height; ++row) {
+            for (int v = 0; v < texel.width; ++v)
+                seen += block[v] * Eigen::Map<const LaneArray>(from + v * kLanes);
+            block += texel.stride;
+            from += static_cast<std::ptrdiff_t>(texel.grid.x) * kLanes;
         }
-        for (std::size_t lane = 0; lane < kLanes; ++lane)
-            sums[lane] += work.normal.penalty_weight[d] * difference[lane] * difference[lane];
+        sums += (noise_share.empty() ? weight[at] : noise_share[at] * weight[at]) * seen * seen;
     }
-    return sums;
+    LaneSums result;
+    Eigen::Map<LaneArray>(result.data()) = sums;
+    return result;
 }
 
 LaneSums squared_norms(const Workspace& work) {
@@ -42,10 +56,16 @@ void clear_lanes(Workspace& work) {
     work.lanes.assign(static_cast<std::size_t>(work.factor.padded * kLanes), 0.0);
 }
 
-void fill_free(const Penalty& penalty,
-               const std::vector<int>& place,
-               Workspace& work,
-               TexelFit& fit) {
+// work.lanes, by place in the factor, over all coefficients.
+void spread_lanes(const Workspace& work, double sign, std::vector<double>& z) {
+    std::fill(z.begin(), z.end(), 0.0);
+    for (std::size_t i = 0; i < work.free_index.size(); ++i)
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            z[static_cast<std::size_t>(work.free_index[i]) * kLanes + lane] =
+                sign * work.lanes[i * kLanes + lane];
+}
+
+void fill_free(const Noise& noise, Workspace& work, std::vector<double>& z, TexelFit& fit) {
     const int count = work.factor.size;
     for (int begin = 0; begin < count; begin += kLanes) {
         const int lanes = std::min(kLanes, count - begin);
@@ -53,17 +73,13 @@ void fill_free(const Penalty& penalty,
         for (int lane = 0; lane < lanes; ++lane)
             work.lanes[static_cast<std::size_t>((begin + lane) * kLanes + lane)] = 1.0;
         solve_lower(work.factor, begin, work.lanes.data());
-        LaneSums variance = squared_norms(work);
-        if (!work.normal.penalty_weight.empty()) {
-            solve_upper(work.factor, work.lanes.data());
-            const LaneSums smoothed = penalty_sums(penalty, work, place);
-            for (std::size_t lane = 0; lane < kLanes; ++lane)
-                variance[lane] -= smoothed[lane];
-        }
+        solve_upper(work.factor, work.lanes.data());
+        spread_lanes(work, 1.0, z);
+        const LaneSums variance = noise_through(noise, z);
         for (int lane = 0; lane < lanes; ++lane)
             fit.sigma[static_cast<std::size_t>(
                 work.free_index[static_cast<std::size_t>(begin + lane)])] =
-                std::sqrt(std::max(0.0, variance[static_cast<std::size_t>(lane)]));
+                std::sqrt(variance[static_cast<std::size_t>(lane)]);
     }
 }
 
@@ -71,7 +87,11 @@ double symmetric_entry(const NormalEquations& normal, int a, int b) {
     return normal.entry(std::max(a, b), std::min(a, b));
 }
 
-void fill_bound(const std::vector<int>& bound, Workspace& work, TexelFit& fit) {
+void fill_bound(const Noise& noise,
+                const std::vector<int>& bound,
+                Workspace& work,
+                std::vector<double>& z,
+                TexelFit& fit) {
     for (std::size_t begin = 0; begin < bound.size(); begin += kLanes) {
         const std::size_t lanes = std::min<std::size_t>(kLanes, bound.size() - begin);
         clear_lanes(work);
@@ -81,13 +101,19 @@ void fill_bound(const std::vector<int>& bound, Workspace& work, TexelFit& fit) {
                     symmetric_entry(work.normal, work.free_index[i], bound[begin + lane]);
         solve_lower(work.factor, 0, work.lanes.data());
         const LaneSums explained = squared_norms(work);
+        solve_upper(work.factor, work.lanes.data());
+        spread_lanes(work, -1.0, z);
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            z[static_cast<std::size_t>(bound[begin + lane]) * kLanes + lane] = 1.0;
+        const LaneSums through = noise_through(noise, z);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const auto m = static_cast<std::size_t>(bound[begin + lane]);
             const double s =
                 work.normal.entry(bound[begin + lane], bound[begin + lane]) - explained[lane];
-            fit.sigma[m] = s > 0.0 ? one_sided_rms(std::max(0.0, work.gradient[m]) / std::sqrt(s)) /
-                                         std::sqrt(s)
-                                   : std::numeric_limits<double>::infinity();
+            const double sigma = std::sqrt(through[lane]) / s;
+            fit.sigma[m] = s > 0.0 && sigma > 0.0
+                               ? sigma * one_sided_rms(std::max(0.0, work.gradient[m]) / s / sigma)
+                               : std::numeric_limits<double>::infinity();
         }
     }
 }
@@ -106,17 +132,24 @@ double one_sided_rms(double ratio) {
     return std::sqrt(1.0 + square - ratio * density / tail);
 }
 
-void fill_sigma(const Penalty& penalty, Workspace& work, TexelFit& fit) {
+void fill_sigma(const TexelDesign& texel,
+                std::span<const double> weight,
+                std::span<const double> noise_share,
+                Workspace& work,
+                TexelFit& fit) {
     const std::size_t n = work.normal.norm.size();
     fit.sigma.assign(n, std::numeric_limits<double>::infinity());
-    std::vector<int> place(n, -1), bound;
-    for (std::size_t i = 0; i < work.free_index.size(); ++i)
-        place[static_cast<std::size_t>(work.free_index[i])] = static_cast<int>(i);
+    std::vector<bool> is_free(n, false);
+    for (const int m : work.free_index)
+        is_free[static_cast<std::size_t>(m)] = true;
+    std::vector<int> bound;
     for (std::size_t m = 0; m < n; ++m)
-        if (place[m] < 0 && work.normal.norm[m] > 0.0)
+        if (!is_free[m] && work.normal.norm[m] > 0.0)
             bound.push_back(static_cast<int>(m));
-    fill_free(penalty, place, work, fit);
-    fill_bound(bound, work, fit);
+    const Noise noise{texel, weight, noise_share};
+    std::vector<double> z(n * kLanes);
+    fill_free(noise, work, z, fit);
+    fill_bound(noise, bound, work, z, fit);
 }
 
 }  // namespace nearfield::fit

@@ -5,14 +5,22 @@
 
 namespace nearfield::fit {
 
-/// Fills fit.sigma from the factor and gradient that solve_texel left in `work`.
+/// Fills fit.sigma from the factor and gradient that solve_texel left in `work`. Noise of variance
+/// noise_share / weight goes through the estimate as it is, with its free coefficients, weights and
+/// smoothing:
 ///
-///     free    X = N_FF^-1;  covariance of c_F = X (G^T W G)_FF X = X - lambda X (D^T Q D)_FF X
-///     bound   s = N_mm - N_mF X N_Fm;  freed alone it would be -g_m / s, with variance 1 / s
+///     free    c_F = X G_F^T W b, X = N_FF^-1;    variance of c_m = sum_k share_k w_k (G_k x_m)^2
+///     bound   freed alone it would be -g_m / s, s = N_mm - N_mF X N_Fm, with the variance
+///             sum_k share_k w_k (G_k z)^2 / s^2, z = e_m - X N_Fm
 ///
-/// For lambda > 0 the first is the spread that noise gives, without what smoothing leaves out, the
-/// second an upper bound of it.
-void fill_sigma(const Penalty& penalty, Workspace& work, TexelFit& fit);
+/// What smoothing or the basis leave out is not in it.
+/// In      noise_share: [k]; empty: all 1
+/// Cost    O(n measurements entries of a row): as much as the fit
+void fill_sigma(const TexelDesign& texel,
+                std::span<const double> weight,
+                std::span<const double> noise_share,
+                Workspace& work,
+                TexelFit& fit);
 
 /// Root mean square of a normal distribution of mean -ratio and sigma 1, cut off below 0.
 double one_sided_rms(double ratio);

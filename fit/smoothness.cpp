@@ -20,7 +20,8 @@ struct FoldScratch {
     TexelDesign texel;
     Workspace work;
     TexelFit fit;
-    std::vector<double> b, weight, held_weight;
+    TexelData data;
+    std::vector<double> held_weight;
 };
 
 struct Question {
@@ -30,6 +31,7 @@ struct Question {
     const Penalty& penalty;
     const std::vector<int>& fold;
     TileRange rows;
+    TileLayout layout;
     const TileInput& input;
 };
 
@@ -41,25 +43,6 @@ struct RowSums {
     std::int64_t held_out = 0, texels = 0;
 };
 
-bool read_texel(
-    const Question& q, std::size_t channel, std::size_t row, std::size_t i, FoldScratch& s) {
-    const auto count = static_cast<std::size_t>(q.design.measurement_count);
-    const auto width = static_cast<std::size_t>(q.design.texels.x);
-    const auto height = static_cast<std::size_t>(q.rows.row_count);
-    s.b.assign(count, 0.0);
-    s.weight.assign(count, 0.0);
-    bool has_data = false;
-    for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t at = ((channel * count + k) * height + row) * width + i;
-        if (std::isinf(q.input.variance[at]))
-            continue;
-        s.b[k] = q.input.value[at];
-        s.weight[k] = 1.0 / static_cast<double>(q.input.variance[at]);
-        has_data = true;
-    }
-    return has_data;
-}
-
 // Chi-square of the measurements of all folds, each foretold by the others.
 double foretold_chi_square(const Question& q, double lambda, FoldScratch& s) {
     SolveOptions solve = q.options.solve;
@@ -67,15 +50,16 @@ double foretold_chi_square(const Question& q, double lambda, FoldScratch& s) {
     solve.wants_sigma = false;
     double sum = 0.0;
     for (int fold = 0; fold < q.smoothness.folds; ++fold) {
-        s.held_weight = s.weight;
-        for (std::size_t k = 0; k < s.weight.size(); ++k)
+        s.held_weight = s.data.weight;
+        for (std::size_t k = 0; k < s.data.weight.size(); ++k)
             if (q.fold[k] == fold)
                 s.held_weight[k] = 0.0;
-        solve_texel(s.texel, q.penalty, s.b, s.held_weight, solve, s.work, s.fit);
-        for (std::size_t k = 0; k < s.weight.size(); ++k)
-            if (q.fold[k] == fold && s.weight[k] > 0.0) {
-                const double off = predicted(s.texel, static_cast<int>(k), s.fit.coeffs) - s.b[k];
-                sum += s.weight[k] * off * off;
+        solve_texel(s.texel, q.penalty, s.data.b, s.held_weight, solve, s.work, s.fit);
+        for (std::size_t k = 0; k < s.data.weight.size(); ++k)
+            if (q.fold[k] == fold && s.data.weight[k] > 0.0) {
+                const double off =
+                    predicted(s.texel, static_cast<int>(k), s.fit.coeffs) - s.data.b[k];
+                sum += s.data.weight[k] * off * off;
             }
     }
     return sum;
@@ -89,8 +73,8 @@ RowSums ask_row(const Question& q, std::size_t row, FoldScratch& s) {
     for (int i = 0; i < q.design.texels.x; i += q.smoothness.texel_step) {
         fill_texel_design(q.design, i, q.rows.first_row + static_cast<int>(row), s.texel);
         for (int channel = 0; channel < q.options.channels; ++channel) {
-            if (!read_texel(q, static_cast<std::size_t>(channel), row, static_cast<std::size_t>(i),
-                            s))
+            if (!read_texel(q.input, q.layout, static_cast<std::size_t>(channel), row,
+                            static_cast<std::size_t>(i), q.options.model_error_rel, s.data))
                 continue;
             for (std::size_t l = 0; l < count; ++l)
                 chi_square[l] = foretold_chi_square(q, q.smoothness.lambdas[l], s);
@@ -99,8 +83,8 @@ RowSums ask_row(const Question& q, std::size_t row, FoldScratch& s) {
                 for (std::size_t b = 0; b < count; ++b)
                     sums.product[a * count + b] += chi_square[a] * chi_square[b];
             }
-            sums.held_out +=
-                std::count_if(s.weight.begin(), s.weight.end(), [](double w) { return w > 0.0; });
+            sums.held_out += std::count_if(s.data.weight.begin(), s.data.weight.end(),
+                                           [](double w) { return w > 0.0; });
             ++sums.texels;
         }
     }
@@ -191,7 +175,14 @@ SmoothnessCurve cross_validate(const Design& design,
     const Penalty penalty = difference_penalty(design.grid, options.solve.difference_order);
     const std::vector<int> fold =
         folds_of(design.measurement_count, smoothness.folds, smoothness.seed);
-    const Question question{design, options, smoothness, penalty, fold, rows, input};
+    const Question question{design,
+                            options,
+                            smoothness,
+                            penalty,
+                            fold,
+                            rows,
+                            tile_layout(design, options.channels, rows),
+                            input};
     std::vector<RowSums> row_sums(static_cast<std::size_t>(rows.row_count));
     tbb::enumerable_thread_specific<FoldScratch> scratch;
     tbb::parallel_for(std::size_t{0}, row_sums.size(), [&](std::size_t row) {

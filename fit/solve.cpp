@@ -242,13 +242,14 @@ void solve_texel(const TexelDesign& texel,
                  std::span<const double> weight,
                  const SolveOptions& options,
                  Workspace& work,
-                 TexelFit& fit) {
+                 TexelFit& fit,
+                 std::span<const double> noise_share) {
     const Problem problem{texel, penalty, b, weight};
     check_data(problem);
     form_normal(texel, penalty, b, weight, options.lambda, work.normal);
     minimize(problem, work, fit);
     if (options.wants_sigma)
-        fill_sigma(penalty, work, fit);
+        fill_sigma(texel, weight, noise_share, work, fit);
 }
 
 void solve_again(const TexelDesign& texel,

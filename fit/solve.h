@@ -63,7 +63,8 @@ struct Workspace {
     std::vector<double> coeffs_padded, gradient, residual, right_side, lanes;
 };
 
-/// Fits b with weights w, [k]. The texel's G may be shared by all channels.
+/// Fits b with weights w, [k]. The texel's G may be shared by all channels. noise_share: of 1 / w,
+/// what is noise and makes sigma, [k]; empty: all of it.
 /// Throws Error if a value is not finite or a weight is negative or not finite.
 /// Cost    11 x 9 positions, B-splines, 4.3 factorizations: 90 to 150 us of a core on a busy
 /// machine
@@ -74,7 +75,8 @@ void solve_texel(const TexelDesign& texel,
                  std::span<const double> weight,
                  const SolveOptions& options,
                  Workspace& work,
-                 TexelFit& fit);
+                 TexelFit& fit,
+                 std::span<const double> noise_share = {});
 
 /// Fits other data with the weights, lambda and texel of the last solve_texel in `work`; no sigma.
 void solve_again(const TexelDesign& texel,

@@ -16,7 +16,7 @@ TileRange bright_rows(const MeasuredTexels& texels) {
     int brightest = 0;
     double most = -1;
     for (int row = 0; row < texels.texels().y; ++row) {
-        const TileInput tile = texels.read({row, 1}, 0);
+        const TileInput tile = texels.read({row, 1});
         const auto count = static_cast<std::ptrdiff_t>(texels.positions()) * texels.texels().x;
         const double sum = std::accumulate(tile.value.begin(), tile.value.begin() + count, 0.0);
         if (sum > most) {
@@ -31,38 +31,39 @@ TileRange bright_rows(const MeasuredTexels& texels) {
 SmoothnessCurve cross_validate_some(const MeasuredTexels& texels,
                                     const Design& design,
                                     const FitOptions& solve,
-                                    const std::optional<double>& lambda,
-                                    double model_error_rel) {
-    constexpr int kTexelsAsked = 50;  // of a row
+                                    int texels_asked,  // of a row
+                                    const std::vector<double>& lambdas) {
     SmoothnessOptions smoothness;
-    if (lambda)
-        smoothness.lambdas = {*lambda};
-    smoothness.texel_step = std::max(1, texels.texels().x / kTexelsAsked);
+    if (!lambdas.empty())
+        smoothness.lambdas = lambdas;
+    smoothness.texel_step = std::max(1, texels.texels().x / texels_asked);
     smoothness.folds = std::min(smoothness.folds, texels.positions());
     const TileRange rows = bright_rows(texels);
-    return cross_validate(design, solve, smoothness, rows, texels.read(rows, model_error_rel));
+    return cross_validate(design, solve, smoothness, rows, texels.read(rows));
 }
 
-// The error that makes chi-square of foretold measurements one by measurement, and the smoothness
-// that foretells best with it. Both depend on each other: from least error upwards.
+// The error that makes chi-square of foretold measurements one by measurement, at the smoothness
+// that foretells best with it: each depends on the other, from least error upwards.
 void choose_model_error(const MeasuredTexels& texels,
                         const Design& design,
-                        const FitOptions& solve,
                         const std::optional<double>& lambda,
-                        CaptureFit& fit) {
+                        FitOptions& solve) {
     constexpr double kLeast = 1e-3, kMost = 1;
     constexpr double kNear = 1.1;
     constexpr int kRounds = 8;
-    fit.model_error_rel = kLeast;
+    constexpr int kTexelsAsked = 20;
+    const std::vector<double> lambdas =
+        lambda ? std::vector<double>{*lambda} : std::vector<double>{1e-4, 1e-3, 1e-2, 1e-1};
+    solve.model_error_rel = kLeast;
     for (int round = 0; round < kRounds; ++round) {
-        fit.smoothness = cross_validate_some(texels, design, solve, lambda, fit.model_error_rel);
-        const double chi_square = fit.smoothness.chi_square[fit.smoothness.best];
-        const double wanted =
-            std::clamp(fit.model_error_rel * std::sqrt(chi_square), kLeast, kMost);
-        const double step = wanted / fit.model_error_rel;
+        const SmoothnessCurve curve =
+            cross_validate_some(texels, design, solve, kTexelsAsked, lambdas);
+        const double wanted = std::clamp(
+            solve.model_error_rel * std::sqrt(curve.chi_square[curve.best]), kLeast, kMost);
+        const double step = wanted / solve.model_error_rel;
         if (step < kNear && step > 1 / kNear)
             break;
-        fit.model_error_rel = wanted;
+        solve.model_error_rel = wanted;
     }
 }
 
@@ -110,15 +111,13 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
     solve.solve.wants_sigma = true;
     solve.keeps_light = true;
     solve.tile_bytes = options.tile_bytes;
-    if (!options.model_error_rel) {
-        choose_model_error(texels, design, solve, options.lambda, fit);
-    } else {
-        fit.model_error_rel = *options.model_error_rel;
-        if (!options.lambda)
-            fit.smoothness = cross_validate_some(texels, design, solve, {}, fit.model_error_rel);
-    }
-    if (options.lambda)
-        fit.smoothness = {};
+    constexpr int kTexelsAsked = 50;
+    solve.model_error_rel = options.model_error_rel.value_or(0.0);
+    if (!options.model_error_rel)
+        choose_model_error(texels, design, options.lambda, solve);
+    if (!options.lambda)
+        fit.smoothness = cross_validate_some(texels, design, solve, kTexelsAsked, {});
+    fit.model_error_rel = solve.model_error_rel;
     fit.lambda = options.lambda ? *options.lambda : fit.smoothness.lambda[fit.smoothness.best];
     solve.solve.lambda = fit.lambda;
     const double chosen_s = now_s();
@@ -128,7 +127,7 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
     slab.sigma.resize(slab.coeffs.size());
     fit.chi_square.resize(slab.texel_count());
     fit.report = solve_lightfield(
-        design, solve, [&](TileRange rows) { return texels.read(rows, fit.model_error_rel); },
+        design, solve, [&](TileRange rows) { return texels.read(rows); },
         [&](const TileResult& tile) { store(tile, slab, fit); },
         [&](double fraction) {
             if (options.progress)

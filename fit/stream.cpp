@@ -16,35 +16,12 @@
 namespace nearfield::fit {
 namespace {
 
-// Where a tile's arrays keep their values.
-struct Layout {
-    std::size_t width = 0, rows = 0, measurements = 0, functions = 0, channels = 0;
-
-    // Of measurement k or image m of `of_each` in a channel.
-    std::size_t at(std::size_t channel,
-                   std::size_t index,
-                   std::size_t of_each,
-                   std::size_t row,
-                   std::size_t i) const {
-        return ((channel * of_each + index) * rows + row) * width + i;
-    }
-    std::size_t texel(std::size_t channel, std::size_t row, std::size_t i) const {
-        return (channel * rows + row) * width + i;
-    }
-};
-
-Layout layout_of(const Design& design, const FitOptions& options, TileRange rows) {
-    return {static_cast<std::size_t>(design.texels.x), static_cast<std::size_t>(rows.row_count),
-            static_cast<std::size_t>(design.measurement_count),
-            static_cast<std::size_t>(design.basis_count()),
-            static_cast<std::size_t>(options.channels)};
-}
-
 // What a thread works with.
 struct Scratch {
     TexelDesign texel;
     Workspace work;
-    std::vector<double> b, weight, drawn;
+    TexelData data;
+    std::vector<double> drawn;
     std::vector<TexelFit> fit;  // [channel]: where the next texel starts
     TexelFit replicate;
 };
@@ -54,27 +31,10 @@ struct TileJob {
     const FitOptions& options;
     const Penalty& penalty;
     TileRange rows;
-    Layout layout;
+    TileLayout layout;
     const TileInput& input;
     TileResult& result;
 };
-
-void gather(const TileJob& job, std::size_t channel, std::size_t row, std::size_t i, Scratch& s) {
-    s.b.resize(job.layout.measurements);
-    s.weight.resize(job.layout.measurements);
-    for (std::size_t k = 0; k < job.layout.measurements; ++k) {
-        const std::size_t at = job.layout.at(channel, k, job.layout.measurements, row, i);
-        const double variance = job.input.variance[at];
-        if (!(variance > 0.0))
-            throw Error{"bad measurement",
-                        fmt::format("channel {}, position {}, texel ({}, {})", channel, k, i,
-                                    static_cast<std::size_t>(job.rows.first_row) + row),
-                        "variance > 0", fmt::format("{}", variance)};
-        const bool is_missing = std::isinf(variance);
-        s.weight[k] = is_missing ? 0.0 : 1.0 / variance;
-        s.b[k] = is_missing ? 0.0 : job.input.value[at];
-    }
-}
 
 void store(const TileJob& job,
            std::size_t channel,
@@ -96,15 +56,15 @@ void solve_replicates(
     for (std::size_t r = 0; r < job.result.replicates.size(); ++r) {
         const NoiseKey key = noise_key(job.options.seed, static_cast<std::uint32_t>(r),
                                        static_cast<std::uint32_t>(channel), texel);
-        for (std::size_t k = 0; k < s.b.size(); ++k)
-            if (s.weight[k] > 0.0)
-                s.drawn[k] =
-                    s.b[k] + residual[k] +
-                    normal_number(key, static_cast<std::uint32_t>(k)) / std::sqrt(s.weight[k]);
+        for (std::size_t k = 0; k < s.drawn.size(); ++k)
+            if (s.data.weight[k] > 0.0)
+                s.drawn[k] = s.data.b[k] + residual[k] +
+                             normal_number(key, static_cast<std::uint32_t>(k)) *
+                                 std::sqrt(s.data.noise_share[k] / s.data.weight[k]);
         s.replicate.is_free = s.fit[channel].is_free;
-        solve_again(s.texel, job.penalty, s.drawn, s.weight, s.work, s.replicate);
+        solve_again(s.texel, job.penalty, s.drawn, s.data.weight, s.work, s.replicate);
         if (job.options.keeps_light)
-            keep_light(s.drawn, s.weight, s.work, s.replicate);
+            keep_light(s.drawn, s.data.weight, s.work, s.replicate);
         store(job, channel, row, i, s.replicate.coeffs, job.result.replicates[r]);
     }
 }
@@ -124,9 +84,10 @@ void add_texel(const TexelFit& fit, double kkt_limit, FitReport& report) {
 }
 
 void fit_texel(const TileJob& job, Scratch& s, TexelFit& fit) {
-    solve_texel(s.texel, job.penalty, s.b, s.weight, job.options.solve, s.work, fit);
+    solve_texel(s.texel, job.penalty, s.data.b, s.data.weight, job.options.solve, s.work, fit,
+                s.data.noise_share);
     if (job.options.keeps_light)
-        keep_light(s.b, s.weight, s.work, fit);
+        keep_light(s.data.b, s.data.weight, s.work, fit);
 }
 
 // The texels of a row from left to right: each starts from its neighbor's free coefficients, the
@@ -140,7 +101,7 @@ FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
                               job.rows.first_row + static_cast<int>(row), s.texel);
         for (std::size_t c = 0; c < job.layout.channels; ++c) {
             TexelFit& fit = s.fit[c];
-            gather(job, c, row, i, s);
+            read_texel(job.input, job.layout, c, row, i, job.options.model_error_rel, s.data);
             fit_texel(job, s, fit);
             store(job, c, row, i, fit.coeffs, job.result.coeffs);
             if (job.options.solve.wants_sigma)
@@ -157,7 +118,7 @@ FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
     return report;
 }
 
-TileResult empty_result(const Layout& layout, const FitOptions& options, TileRange rows) {
+TileResult empty_result(const TileLayout& layout, const FitOptions& options, TileRange rows) {
     const std::size_t texels = layout.channels * layout.rows * layout.width;
     TileResult result;
     result.rows = rows;
@@ -216,6 +177,8 @@ void check(const FitOptions& options) {
         refuse("difference_order", "1 or 2", options.solve.difference_order);
     if (options.channels < 1)
         refuse("channels", ">= 1", options.channels);
+    if (!(options.model_error_rel >= 0.0) || std::isinf(options.model_error_rel))
+        refuse("model_error_rel", "finite, >= 0", options.model_error_rel);
     if (options.replicates < 0)
         refuse("replicates", ">= 0", options.replicates);
     if (!(options.tile_bytes > 0.0))
@@ -237,7 +200,7 @@ TileResult solve_tile(const Design& design,
                       const TileInput& input,
                       FitReport& report) {
     check(options);
-    const Layout layout = layout_of(design, options, rows);
+    const TileLayout layout = tile_layout(design, options.channels, rows);
     const std::size_t wanted = layout.channels * layout.measurements * layout.rows * layout.width;
     if (input.value.size() != wanted || input.variance.size() != wanted)
         throw Error{"bad tile", fmt::format("rows from {}", rows.first_row),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fit/solve.h"
+#include "fit/texel_data.h"
 
 #include <array>
 #include <cstdint>
@@ -10,16 +11,6 @@
 #include <vector>
 
 namespace nearfield::fit {
-
-struct TileRange {
-    int first_row = 0, row_count = 0;  // of texels, j
-};
-
-/// What was measured of a tile. Arrays are [channel][k][j][i].
-struct TileInput {
-    std::vector<float> value;
-    std::vector<float> variance;  // infinity: missing or saturated
-};
 
 /// What a tile's fit gives. Arrays are [channel][m][j][i] or [channel][j][i].
 struct TileResult {
@@ -53,7 +44,8 @@ FitReport merged(const FitReport& a, const FitReport& b);
 struct FitOptions {
     SolveOptions solve;
     int channels = 1;
-    bool keeps_light = false;  // of every texel, summed over its measurements (keep_light.h)
+    bool keeps_light = false;    // of every texel, summed over its measurements (keep_light.h)
+    double model_error_rel = 0;  // what rig and basis get wrong, of a texel's brightest measurement
     double kkt_limit = 1e-6;
     int replicates = 0;         // parametric bootstrap: fits of G c + noise; 16 give sigma to 18 %
     std::uint64_t seed = 1;     // of the replicates' noise

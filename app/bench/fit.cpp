@@ -91,6 +91,7 @@ std::pair<fit::TileRange, fit::TileInput> bright_rows(const fit::TileInput& tile
 }
 
 double chosen_lambda(const fit::Design& design,
+                     const fit::FitOptions& options,
                      const fit::TileInput& tile,
                      const Slab& planes,
                      int positions) {
@@ -100,7 +101,7 @@ double chosen_lambda(const fit::Design& design,
     smoothness.texel_step = std::max(1, planes.texels.x / kTexelsAsked);
     smoothness.folds = std::min(smoothness.folds, positions);
     const auto [rows, part] = bright_rows(tile, planes);
-    const fit::SmoothnessCurve curve = cross_validate(design, {}, smoothness, rows, part);
+    const fit::SmoothnessCurve curve = cross_validate(design, options, smoothness, rows, part);
     return curve.lambda[curve.best];
 }
 
@@ -159,15 +160,16 @@ FitResult measured_and_fitted(const FitSetting& setting,
     const std::vector<double> exact_lx = measured_lx(light, optics);
     fit::TileInput tile =
         photographed(exact_lx, missing, {setting.exposures, setting.frames}, seed);
-    add_model_error(tile, positions, setting.model_error_rel);
 
+    fit::FitOptions options;
+    options.keeps_light = true;
+    options.model_error_rel = setting.model_error_rel;
     FitResult result;
     result.setting = setting;
     result.positions = static_cast<int>(std::count(missing.begin(), missing.end(), false));
     result.lambda = setting.lambda
                         ? *setting.lambda
-                        : chosen_lambda(design, tile, planes, static_cast<int>(positions));
-    fit::FitOptions options;
+                        : chosen_lambda(design, options, tile, planes, static_cast<int>(positions));
     options.solve.lambda = result.lambda;
     options.solve.wants_sigma = true;
     const fit::TileRange all{0, planes.texels.y};

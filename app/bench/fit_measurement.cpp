@@ -81,16 +81,4 @@ fit::TileInput photographed(const std::vector<double>& light,
     return tile;
 }
 
-void add_model_error(fit::TileInput& tile, std::size_t positions, double error_rel) {
-    const std::size_t texels = tile.value.size() / positions;
-    for (std::size_t t = 0; t < texels; ++t) {
-        float brightest = 0;
-        for (std::size_t k = 0; k < positions; ++k)
-            brightest = std::max(brightest, tile.value[k * texels + t]);
-        const float error = static_cast<float>(error_rel) * brightest;
-        for (std::size_t k = 0; k < positions; ++k)
-            tile.variance[k * texels + t] += error * error;
-    }
-}
-
 }  // namespace nearfield::bench

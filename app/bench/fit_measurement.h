@@ -25,7 +25,4 @@ fit::TileInput photographed(const std::vector<double>& light,
                             const Bracket& bracket,
                             std::uint32_t seed);
 
-/// Adds the model's own error, relative to a texel's brightest position, to all variances.
-void add_model_error(fit::TileInput& tile, std::size_t positions, double error_rel);
-
 }  // namespace nearfield::bench

@@ -18,14 +18,37 @@ TEST(CutoffLine, IsWhereLightFallsFastest) {
             const double above = (glm::degrees(std::atan(tangent_y)) - middle_deg) / 0.1;
             return std::exp(3.0 - 3.0 * std::tanh(above));
         };
-        const auto found = cutoff_tangent(scan, 0.1);
+        const auto found = gradient_tangent(scan, 0.1);
         ASSERT_TRUE(found);
         EXPECT_NEAR(glm::degrees(std::atan(*found)), middle_deg, 0.004) << middle_deg;
     }
 }
 
+// Proves that blur moves the edge by a tenth of what it moves the gradient.
+TEST(CutoffLine, BlurHardlyMovesTheEdge) {
+    const auto blurred = [](double width_deg) -> BeamScan {
+        return [width_deg](double /*tangent_x*/, double tangent_y) {
+            const double at_deg = glm::degrees(std::atan(tangent_y)) - 0.31;
+            // A beam exp(3 - 0.2 x) that ends at x = 0, with an even floor, through a gaussian.
+            const double variance = width_deg * width_deg;
+            return 0.1 + 0.5 * std::exp(3 - 0.2 * at_deg + 0.02 * variance) *
+                             std::erfc((at_deg - 0.2 * variance) / (width_deg * std::sqrt(2.0)));
+        };
+    };
+    const auto degrees = [](const std::optional<double>& tangent) {
+        EXPECT_TRUE(tangent);
+        return glm::degrees(std::atan(tangent.value_or(1.0)));
+    };
+    const double sharp_deg = degrees(edge_tangent(blurred(0.03), 0.0));
+    EXPECT_NEAR(sharp_deg, 0.31, 0.01);
+    EXPECT_NEAR(degrees(edge_tangent(blurred(0.2), 0.0)), sharp_deg, 0.01);
+    EXPECT_NEAR(degrees(edge_tangent(blurred(0.3), 0.0)), sharp_deg, 0.05);
+    EXPECT_GT(degrees(gradient_tangent(blurred(0.3), 0.0)), 0.31 + 0.3);
+}
+
 TEST(CutoffLine, DarknessHasNone) {
-    EXPECT_FALSE(cutoff_tangent([](double, double) { return 0.0; }, 0.0));
+    EXPECT_FALSE(edge_tangent([](double, double) { return 0.0; }, 0.0));
+    EXPECT_FALSE(gradient_tangent([](double, double) { return 0.0; }, 0.0));
 }
 
 // Proves that it is the headlight's own line, level on the left and rising on the right: the
@@ -37,7 +60,7 @@ TEST(CutoffLine, FindsTheHeadlights) {
         return model::luminance(sample_data::intensity(headlight, {x, y, 1.0}));
     };
     const auto above_step_deg = [&](double tangent_x, double step) {
-        const auto line = cutoff_tangent(scan, tangent_x);
+        const auto line = gradient_tangent(scan, tangent_x);
         EXPECT_TRUE(line) << tangent_x;
         return glm::degrees(std::atan(line.value_or(1.0)) - std::atan(step));
     };
