@@ -66,7 +66,7 @@ std::vector<FitSetting> fit_settings(bool quick) {
         [](FitSetting& s, double delta_m) { s.delta_m = delta_m; });
     add(settings, "lambda", "{:g}", ends<double>(quick, {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}),
         [](FitSetting& s, double lambda) { s.lambda = lambda; });
-    add(settings, "model-error", "{:g}", ends<double>(quick, {0, 1e-4, 1e-3, 3e-3, 1e-2}),
+    add(settings, "model-error", "{:g}", ends<double>(quick, {0, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1}),
         [](FitSetting& s, double error) { s.model_error_rel = error; });
     return settings;
 }

@@ -21,7 +21,7 @@ struct FitSetting {
     std::string basis = "bspline";
     int exposures = 3;              // each four times as long as the one before
     int frames = 1;                 // of each exposure, averaged
-    double model_error_rel = 3e-3;  // of a texel's brightest position, in every measurement's sigma
+    double model_error_rel = 3e-2;  // of a texel's brightest position, in every measurement's sigma
     std::optional<double> lambda;   // smoothness; none: by cross-validation
 };
 
