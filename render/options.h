@@ -96,6 +96,7 @@ struct RenderOptions {
     /// for; with one of those: at most so many.
     int samples = 0;
     int q = 0;  // of the windowed sum: windows of at most so many texels a side; 0: exact
+    bool has_bias_bound = true;  // with q: how wrong that is, by sums at 2q (OpenGL: 4 times q's)
     std::optional<model::Sequence> sequence;  // of samplers; empty: default_sequence
     model::Shift shift = model::Shift::Random;
     std::uint32_t seed = 1;

@@ -27,6 +27,9 @@ struct LampLight {
 
 /// What was rendered of a view.
 struct Frame {
+    /// Whether sigma and bias are all that may be wrong, shadow maps aside.
+    bool knows_error() const { return quality.q == 0 || quality.has_bias_bound; }
+
     glm::ivec2 size_px{0};
     Camera camera;
     Quality quality;

@@ -17,9 +17,13 @@ void draw_reading(const Viewer& viewer) {
         return;
     }
     const bool is_photometric = viewer.frame->quantity == Quantity::Photometric;
-    ImGui::Text("%.5g %s +- %.2g sampling, bias <= %.2g", reading->irradiance_y,
-                is_photometric ? "lx" : "W/m2", reading->sigma_rel * reading->irradiance_y,
-                reading->bias_rel * reading->irradiance_y);
+    const char* unit = is_photometric ? "lx" : "W/m2";
+    if (viewer.frame->knows_error())
+        ImGui::Text("%.5g %s +- %.2g, bias <= %.2g", reading->irradiance_y, unit,
+                    reading->sigma_rel * reading->irradiance_y,
+                    reading->bias_rel * reading->irradiance_y);
+    else
+        ImGui::Text("about %.3g %s (draft)", reading->irradiance_y, unit);
     ImGui::Text("%.4g %s at (%.3f, %.3f, %.3f) m", reading->radiance_y,
                 is_photometric ? "cd/m2" : "W/(m2 sr)", reading->position_world_m.x,
                 reading->position_world_m.y, reading->position_world_m.z);
@@ -29,11 +33,12 @@ void draw_graph(const Viewer& viewer) {
     std::vector<float> times_ms, errors;
     for (const Shot& shot : viewer.shots) {
         times_ms.push_back(static_cast<float>(1e3 * shot.time_s));
-        errors.push_back(static_cast<float>(100.0 * shot.error_rel));
+        if (shot.error_rel)
+            errors.push_back(static_cast<float>(100.0 * *shot.error_rel));
     }
-    if (times_ms.empty())
-        return;
     const auto plot = [](const char* unit, const std::vector<float>& values) {
+        if (values.empty())
+            return;
         const float most = *std::max_element(values.begin(), values.end());
         ImGui::PlotHistogram("##", values.data(), static_cast<int>(values.size()), 0,
                              fmt::format("{:.3g} {}", values.back(), unit).c_str(), 0.0F,
@@ -132,6 +137,24 @@ void draw_help(Viewer& viewer) {
     ImGui::End();
 }
 
+void draw_message(const Viewer& viewer, glm::vec2 window) {
+    const std::string& text = said(viewer);
+    if (text.empty())
+        return;
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float margin = 0.4F * ImGui::GetFontSize();
+    const ImVec2 at(std::max(0.5F * (window.x - size.x), margin),
+                    window.y - size.y - 2.0F * margin);
+    ImDrawList* list = ImGui::GetForegroundDrawList();
+    list->AddRectFilled(ImVec2(at.x - margin, at.y - margin),
+                        ImVec2(at.x + size.x + margin, at.y + size.y + margin),
+                        IM_COL32(0, 0, 0, 200));
+    list->AddText(
+        at,
+        viewer.progress.error.empty() ? IM_COL32(220, 220, 220, 255) : IM_COL32(255, 110, 90, 255),
+        text.c_str());
+}
+
 void draw_panels(Viewer& viewer, PanelState& state, glm::vec2 window) {
     state.places.clear();
     if (viewer.shows_panels && viewer.is_open) {
@@ -157,13 +180,7 @@ void draw_panels(Viewer& viewer, PanelState& state, glm::vec2 window) {
         ImGui::End();
     }
     draw_help(viewer);
-    const std::string& error = viewer.progress.error;
-    const std::string& said = error.empty() ? viewer.message : error;
-    if (!said.empty())
-        ImGui::GetForegroundDrawList()->AddText(
-            ImVec2(0.5F * window.x - 200.0F, window.y - 1.6F * ImGui::GetFontSize()),
-            error.empty() ? IM_COL32(220, 220, 220, 255) : IM_COL32(255, 110, 90, 255),
-            said.c_str());
+    draw_message(viewer, window);
 }
 
 }  // namespace nearfield::viewer

@@ -45,6 +45,8 @@ void draw_compare_panel(Viewer& viewer, PanelState& state);
 void draw_dial_panel(Viewer& viewer, PanelState& state);
 void draw_knowledge_panel(Viewer& viewer, PanelState& state);
 void draw_help(Viewer& viewer);
+/// At the lower edge, above everything.
+void draw_message(const Viewer& viewer, glm::vec2 window);
 
 /// Handles, lamps' places, the region, the scale: over the picture, which fills the window.
 void draw_overlay(const Viewer& viewer, PanelState& state, glm::vec2 window);

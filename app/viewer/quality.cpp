@@ -33,6 +33,7 @@ std::vector<Quality> stages_of(int dial, int draft_divisor) {
     std::vector<Quality> stages;
     Quality draft = dials().front().quality;
     draft.divisor = draft_divisor;
+    draft.has_bias_bound = false;
     stages.push_back(draft);
     if (draft_divisor > 2) {
         Quality half = draft;
@@ -57,6 +58,7 @@ render::RenderOptions options_of(const Quality& quality, glm::ivec2 size_px) {
     options.device = render::Device::Gl;
     options.size_px = (size_px + quality.divisor - 1) / quality.divisor;
     options.q = quality.q;
+    options.has_bias_bound = quality.has_bias_bound;
     options.shadow_maps = quality.shadow_maps;
     options.effects.gloss = quality.has_gloss ? render::Switch::Auto : render::Switch::Off;
     options.is_displayed = true;

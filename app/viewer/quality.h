@@ -16,6 +16,7 @@ struct Quality {
     int q = 0;        // RenderOptions::q
     render::ShadowMapOptions shadow_maps;
     bool has_gloss = true;
+    bool has_bias_bound = true;  // drafts do without
 
     bool operator==(const Quality&) const = default;
 };

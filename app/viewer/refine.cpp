@@ -108,7 +108,7 @@ void Refiner::render_lamp(const Scene& scene,
     light->radiance = std::move(layers[render::kRadiance].values);
     light->irradiance = std::move(layers[render::kIrradiance].values);
     light->sigma = std::move(layers[render::kSigma].values);
-    if (kept.quality.q > 0)
+    if (kept.quality.q > 0 && kept.quality.has_bias_bound)
         light->bias = std::move(layers.back().values);
     kept.lights[edited.id] = std::move(light);
     kept.rendered.insert_or_assign(edited.id, edited);

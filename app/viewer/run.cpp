@@ -99,7 +99,7 @@ void ask(Run& run) {
     if (run.asked && is_lit_alike(*run.asked, request))
         return;
     request.serial = ++run.viewer.serial;
-    run.trace.asked(request.serial);
+    run.trace.asked(request);
     run.asked = request;
     run.worker.show(std::move(request));
 }
@@ -135,7 +135,7 @@ void autosave(Run& run) {
 
 /// How long the loop may sleep: below 0, until something happens.
 double sleep_s(const Run& run) {
-    if (run.frames_left > 0)
+    if (run.frames_left > 0 || run.window.has_events())
         return 0.0;
     if (ImGui::GetIO().WantTextInput)
         return kCursor_s;
@@ -165,13 +165,18 @@ void draw(Run& run) {
     run.window.begin();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
+    run.trace.saw_input();
     draw_panels(run.viewer, run.panels, window);
     handle_input(run.viewer, run.panels, window);
+    ask(run);  // before all else is drawn: the renderer begins in the meantime
+    show_frame(run);
+    run.window.draw_picture();
     draw_overlay(run.viewer, run.panels, window);
     run.window.end();
     write_screenshots(run);
     run.window.swap();
     run.trace.placed(run.panels.places);
+    run.trace.said(said(run.viewer));
     if (run.viewer.frame && run.viewer.frame != run.shown) {
         run.shown = run.viewer.frame;
         run.trace.showed(*run.shown, run.viewer.progress.is_final);
@@ -226,11 +231,10 @@ void run_viewer(const ViewerOptions& options) {
     while (!run.window.is_closing()) {
         const double timeout_s = sleep_s(run);
         run.window.wait(timeout_s);
+        run.trace.woke();
         run.frames_left = timeout_s == 0.0 ? run.frames_left - 1 : kFramesAfterEvent;
         finish_opening(run);
         draw(run);
-        ask(run);
-        show_frame(run);
         autosave(run);
     }
     if (options.remembers)

@@ -3,22 +3,69 @@
 
 #include "formats/files/provenance.h"
 
+#include <imgui.h>
 #include <nlohmann/json.hpp>
+
+#include <iterator>
+#include <utility>
+#include <vector>
 
 namespace nearfield::viewer {
 
 Trace::Trace(const std::string& path) : start_s_(now_s()) {
-    if (!path.empty())
-        file_.open(path);
+    if (path.empty())
+        return;
+    file_.open(path);
+    write({{"event", "start"}, {"clock_s", start_s_}});
+}
+
+void Trace::write(const nlohmann::json& line) {
+    file_ << line.dump() << std::endl;
 }
 
 double Trace::now_ms() const {
     return 1e3 * (now_s() - start_s_);
 }
 
-void Trace::asked(int serial) {
-    if (file_.is_open())
-        asked_ms_.emplace(serial, now_ms());
+void Trace::woke() {
+    woke_ms_ = now_ms();
+}
+
+void Trace::asked(const Request& request) {
+    if (!file_.is_open())
+        return;
+    asked_ms_.emplace(request.serial, woke_ms_);
+    write({{"event", "request"},
+           {"t_ms", now_ms()},
+           {"serial", request.serial},
+           {"dial", request.dial}});
+}
+
+void Trace::saw_input() {
+    if (!file_.is_open())
+        return;
+    const ImGuiIO& io = ImGui::GetIO();
+    std::vector<std::size_t> keys;
+    for (std::size_t key = 0; key < std::size(io.KeysDown); ++key)
+        if (io.KeysDown[key])
+            keys.push_back(key);
+    const nlohmann::json seen = {{"event", "input"},
+                                 {"x", io.MousePos.x},
+                                 {"y", io.MousePos.y},
+                                 {"is_down", io.MouseDown[0]},
+                                 {"keys", keys}};
+    std::string text = seen.dump();
+    if (text == input_)
+        return;
+    write(seen);
+    input_ = std::move(text);
+}
+
+void Trace::said(const std::string& message) {
+    if (!file_.is_open() || message == message_)
+        return;
+    message_ = message;
+    write({{"event", "message"}, {"t_ms", now_ms()}, {"text", message}});
 }
 
 void Trace::showed(const Frame& frame, bool is_final) {
@@ -32,7 +79,7 @@ void Trace::showed(const Frame& frame, bool is_final) {
     if (oldest != asked_ms_.end() && oldest->first <= frame.serial)
         line["feedback_ms"] = now_ms() - oldest->second;
     asked_ms_.erase(asked_ms_.begin(), asked_ms_.upper_bound(frame.serial));
-    file_ << line.dump() << std::endl;
+    write(line);
 }
 
 void Trace::placed(const std::map<std::string, glm::vec4>& places) {
@@ -42,7 +89,7 @@ void Trace::placed(const std::map<std::string, glm::vec4>& places) {
     nlohmann::json line = {{"event", "places"}, {"t_ms", now_ms()}};
     for (const auto& [name, place] : places)
         line["places"][name] = {place.x, place.y, place.z, place.w};
-    file_ << line.dump() << std::endl;
+    write(line);
 }
 
 }  // namespace nearfield::viewer

@@ -19,7 +19,9 @@ glm::ivec2 pixel_at(const Frame& frame, glm::dvec2 at) {
 }
 
 void add_shot(Viewer& viewer) {
-    viewer.shots.push_back({viewer.frame->time_s, error_of(viewer.mixed)});
+    viewer.shots.push_back({viewer.frame->time_s, viewer.frame->knows_error()
+                                                      ? std::optional(error_of(viewer.mixed))
+                                                      : std::nullopt});
     if (viewer.shots.size() > kMostShots)
         viewer.shots.pop_front();
 }
@@ -107,6 +109,10 @@ void save(Viewer& viewer, const std::string& path) {
 
 Request request_of(const Viewer& viewer, glm::ivec2 size_px) {
     return {viewer.history.now, viewer.view.camera, size_px, viewer.dial, viewer.serial};
+}
+
+const std::string& said(const Viewer& viewer) {
+    return viewer.progress.error.empty() ? viewer.message : viewer.progress.error;
 }
 
 double error_of(const Mixed& mixed) {

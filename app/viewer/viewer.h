@@ -34,7 +34,8 @@ struct KeptState {
 
 /// What was shown last, for the graph.
 struct Shot {
-    double time_s = 0, error_rel = 0;
+    double time_s = 0;
+    std::optional<double> error_rel;  // none of drafts, which do not estimate it
 };
 
 struct Viewer {
@@ -96,6 +97,9 @@ std::optional<Reading> reading_under_mouse(const Viewer& viewer);
 /// The point of a surface at a place of the picture (0 ... 1).
 std::optional<glm::dvec3> surface_at(const Viewer& viewer, glm::dvec2 at);
 std::optional<RegionStatistics> region_statistics(const Viewer& viewer);
+
+/// What went wrong, or else the last message.
+const std::string& said(const Viewer& viewer);
 
 /// Estimated error of what is shown: mean of (sigma + bias) / radiance over lit pixels.
 double error_of(const Mixed& mixed);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/viewer/window.h"
 
+#include "app/viewer/events.h"
 #include "formats/files/error.h"
 
 #include <epoxy/gl.h>
@@ -11,7 +12,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <deque>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 namespace nearfield::viewer {
@@ -56,7 +61,54 @@ struct Window::State {
     GLuint texture = 0;
     glm::ivec2 texture_px{0};
     std::function<void(const std::string&)> drop;
+    std::deque<InputEvent> events;  // that ImGui has not had yet
+    std::optional<glm::vec2> mouse;
+    std::array<bool, 5> buttons{};  // ImGui's number of them
+
+    void tell(const InputEvent& event);
+    void tell_events_of_a_frame();
 };
+
+void Window::State::tell(const InputEvent& event) {
+    ImGuiIO& io = ImGui::GetIO();
+    const auto code = static_cast<std::size_t>(std::max(event.code, 0));
+    switch (event.kind) {
+        case InputEvent::Kind::Move:
+            mouse = event.at;
+            break;
+        case InputEvent::Kind::Button:
+            if (code < buttons.size())
+                buttons[code] = event.is_down;
+            break;
+        case InputEvent::Kind::Wheel:
+            io.MouseWheelH += event.at.x;
+            io.MouseWheel += event.at.y;
+            break;
+        case InputEvent::Kind::Key:
+            if (code < std::size(io.KeysDown))
+                io.KeysDown[code] = event.is_down;
+            break;
+        case InputEvent::Kind::Character:
+            io.AddInputCharacter(static_cast<unsigned>(event.code));
+            break;
+    }
+}
+
+void Window::State::tell_events_of_a_frame() {
+    for (std::size_t left = events_of_a_frame(events); left > 0; --left) {
+        tell(events.front());
+        events.pop_front();
+    }
+    ImGuiIO& io = ImGui::GetIO();
+    const auto held = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+    io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+    io.KeySuper = held(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+    if (mouse)
+        io.MousePos = ImVec2(mouse->x, mouse->y);
+    std::copy(buttons.begin(), buttons.end(), std::begin(io.MouseDown));
+}
 
 Window::Window(const WindowPlace& place) : state_(std::make_unique<State>()) {
     if (glfwInit() != GLFW_TRUE)
@@ -71,11 +123,7 @@ Window::Window(const WindowPlace& place) : state_(std::make_unique<State>()) {
     if (place.has_position)
         glfwSetWindowPos(window, place.position_px.x, place.position_px.y);
     glfwSetWindowUserPointer(window, state_.get());
-    glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** paths) {
-        const auto* state = static_cast<State*>(glfwGetWindowUserPointer(of));
-        for (int k = 0; k < count && state->drop; ++k)
-            state->drop(paths[k]);
-    });
+    receive_events();
     glfwMakeContextCurrent(window);
     glfwSwapInterval(1);
     IMGUI_CHECKVERSION();
@@ -84,8 +132,40 @@ Window::Window(const WindowPlace& place) : state_(std::make_unique<State>()) {
     float scale_x = 1.0F, scale_y = 1.0F;
     glfwGetWindowContentScale(window, &scale_x, &scale_y);
     style(std::max(scale_x, 1.0F));
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplGlfw_InitForOpenGL(window, false);  // events are handed on by begin()
     ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+void Window::receive_events() {
+    using Kind = InputEvent::Kind;
+    GLFWwindow* window = state_->window;
+    static const auto state_of = [](GLFWwindow* of) {
+        return static_cast<State*>(glfwGetWindowUserPointer(of));
+    };
+    glfwSetCursorPosCallback(window, [](GLFWwindow* of, double x, double y) {
+        state_of(of)->events.push_back({Kind::Move, 0, false, glm::vec2(x, y)});
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* of, int button, int action, int) {
+        state_of(of)->events.push_back({Kind::Button, button, action == GLFW_PRESS});
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* of, double x, double y) {
+        state_of(of)->events.push_back({Kind::Wheel, 0, false, glm::vec2(x, y)});
+    });
+    glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int) {
+        if (action != GLFW_REPEAT)  // ImGui repeats by itself
+            state_of(of)->events.push_back({Kind::Key, key, action == GLFW_PRESS});
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* of, unsigned character) {
+        state_of(of)->events.push_back({Kind::Character, static_cast<int>(character)});
+    });
+    glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** paths) {
+        for (int k = 0; k < count && state_of(of)->drop; ++k)
+            state_of(of)->drop(paths[k]);
+    });
+}
+
+bool Window::has_events() const {
+    return !state_->events.empty();
 }
 
 Window::~Window() {
@@ -143,7 +223,11 @@ void Window::wake() {
 void Window::begin() {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    state_->tell_events_of_a_frame();
     ImGui::NewFrame();
+}
+
+void Window::draw_picture() {
     if (state_->texture == 0)
         return;
     const auto texture = static_cast<std::uintptr_t>(state_->texture);

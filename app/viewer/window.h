@@ -42,8 +42,13 @@ class Window {
     /// From any thread.
     static void wake();
 
-    /// Between the two ImGui is drawn. The picture fills the window, pixel by pixel or stretched.
+    /// Whether there are some that ImGui has not had yet: a frame takes only so many.
+    bool has_events() const;
+
+    /// Between the two ImGui is drawn; draw_picture() puts the picture behind it, which fills the
+    /// window, pixel by pixel or stretched.
     void begin();
+    void draw_picture();
     void end();
     /// Shows what was drawn.
     void swap();
@@ -53,6 +58,7 @@ class Window {
     std::vector<unsigned char> pixels() const;
 
   private:
+    void receive_events();
     struct State;
     std::unique_ptr<State> state_;
 };

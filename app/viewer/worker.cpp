@@ -6,6 +6,7 @@
 #include "render/gpu/session.h"
 #include "render/metrics.h"
 
+#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -14,6 +15,9 @@ namespace {
 
 constexpr int kTrialDivisor = 8;
 constexpr double kDraft_s = 0.045;  // two of them within the tenth of a second that feels direct
+// After a draft, before refining: what is in the middle of a drag would be given up at once, and
+// the next draft would wait for that.
+constexpr std::chrono::milliseconds kStill(150);
 
 /// Every lamp that is lit now was so before, alike.
 bool has_all_light(const Document& before, const Document& now) {
@@ -91,6 +95,11 @@ bool Worker::is_superseded(int ticket) const {
     return ticket != ticket_;
 }
 
+bool Worker::stays_wanted(int ticket) {
+    std::unique_lock lock(mutex_);
+    return !asked_.wait_for(lock, kStill, [&] { return is_ending_ || ticket != ticket_; });
+}
+
 struct Worker::Thread {
     Worker& worker;
     render::gpu::Session session{};
@@ -124,7 +133,7 @@ void Worker::Thread::refine(const Request& request, int ticket) {
             progress.error.clear();
             progress.draft_divisor = draft_divisor;
         });
-        if (worker.is_superseded(ticket))
+        if (is_draft ? !worker.stays_wanted(ticket) : worker.is_superseded(ticket))
             return;
     }
 }

@@ -76,6 +76,8 @@ class Worker {
     void loop();
     void tell(const std::function<void(Progress&)>& change);
     bool is_superseded(int ticket) const;
+    /// Waits a moment: whether nothing else is asked for in it.
+    bool stays_wanted(int ticket);
 
     std::function<void()> wake_;
     mutable std::mutex mutex_;

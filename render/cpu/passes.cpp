@@ -218,7 +218,7 @@ void render_passes(Frame& frame, const RenderHooks& hooks, double start_s, Rende
     if (options.time_s > 0.0)
         cost = plan_first_pass(run, most, pass);
     report.plan_s = now_s() - plan_start_s;
-    if (pass.q > 0)
+    if (pass.q > 0 && options.has_bias_bound)
         frame.bias_layer = add_bias_layer(frame.picture);
 
     const double passes_start_s = now_s();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <mutex>
 
 namespace nearfield::render::gpu {
 namespace {
@@ -41,24 +42,45 @@ EGLDisplay open_display() {
     throw no_context("eglInitialize");
 }
 
+struct Display {
+    EGLDisplay id = EGL_NO_DISPLAY;
+
+    Display() : id(open_display()) {}
+    ~Display() { eglTerminate(id); }
+    Display(const Display&) = delete;
+    Display& operator=(const Display&) = delete;
+};
+
+/// A process has one display of a platform, whoever opens it, and eglTerminate ends it for all:
+/// the last context does that.
+std::shared_ptr<const Display> shared_display() {
+    static std::mutex mutex;
+    static std::weak_ptr<const Display> opened;
+    const std::lock_guard lock(mutex);
+    std::shared_ptr<const Display> display = opened.lock();
+    if (!display)
+        opened = display = std::make_shared<const Display>();
+    return display;
+}
+
 }  // namespace
 
 struct HeadlessContext::Egl {
-    EGLDisplay display = EGL_NO_DISPLAY;
+    std::shared_ptr<const Display> display;
     EGLContext context = EGL_NO_CONTEXT;
 
     ~Egl() {
-        if (display == EGL_NO_DISPLAY)
+        if (!display)
             return;
-        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglMakeCurrent(display->id, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if (context != EGL_NO_CONTEXT)
-            eglDestroyContext(display, context);
-        eglTerminate(display);
+            eglDestroyContext(display->id, context);
     }
 };
 
 HeadlessContext::HeadlessContext() : egl_(std::make_unique<Egl>()) {
-    egl_->display = open_display();
+    egl_->display = shared_display();
+    EGLDisplay display = egl_->display->id;
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE)
         throw no_context("eglBindAPI");
     constexpr std::array<EGLint, 9> kAttributes = {EGL_CONTEXT_MAJOR_VERSION,
@@ -71,10 +93,10 @@ HeadlessContext::HeadlessContext() : egl_(std::make_unique<Egl>()) {
                                                    EGL_TRUE,  // or messages may be left out
                                                    EGL_NONE};
     egl_->context =
-        eglCreateContext(egl_->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
+        eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
     if (egl_->context == EGL_NO_CONTEXT)
         throw no_context("eglCreateContext");
-    if (eglMakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl_->context) != EGL_TRUE)
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl_->context) != EGL_TRUE)
         throw no_context("eglMakeCurrent");
 }
 

@@ -179,16 +179,21 @@ int count_unmapped(Device& device,
                    const Surfaces& surfaces,
                    const Buffer& materials,
                    const LampsOnCard& on_card,
-                   const LampPass& pass) {
+                   const LampPass& pass,
+                   LightPasses& passes) {
     const Lamp& lamp = pass.lamps.lamps[pass.lamp];
+    if (!pass.plan.lamps[pass.lamp].has_shadows)
+        return 0;
+    if (!passes.unmapped)
+        passes.unmapped = link_unmapped(pass.options.shadow_maps);
     const FileOnCard& file = on_card.files.at(lamp.file.get());
     int pixels = 0;
-    for (std::size_t s = 0; pass.plan.lamps[pass.lamp].has_shadows && s < lamp.slabs.size(); ++s) {
+    for (std::size_t s = 0; s < lamp.slabs.size(); ++s) {
         const SlabTextures& slab =
             file.sums.empty() ? file.sampled[s] : file.sums[s].levels.front();
         place_slab(slab, placement_of(lamp.slabs[s]));
-        pixels +=
-            count_unmapped({device, surfaces, materials, slab, on_card.shadows[pass.lamp], s});
+        pixels += count_unmapped({device, surfaces, materials, slab, on_card.shadows[pass.lamp], s},
+                                 passes.unmapped);
     }
     return pixels;
 }

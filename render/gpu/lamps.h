@@ -42,6 +42,7 @@ void upload_lamps(Device& device,
 struct LightPasses {
     LightSumPrograms sums, unshadowed_sums;
     LightSamples samples, unshadowed_samples;
+    Program unmapped;  // count_unmapped's, once it was asked for
 };
 
 /// A lamp whose light is added at the surfaces that are bound, to image units 0 and 1.
@@ -70,6 +71,7 @@ int count_unmapped(Device& device,
                    const Surfaces& surfaces,
                    const Buffer& materials,
                    const LampsOnCard& on_card,
-                   const LampPass& pass);
+                   const LampPass& pass,
+                   LightPasses& passes);
 
 }  // namespace nearfield::render::gpu

@@ -218,7 +218,7 @@ void sum_rows(Device& device,
 // A picture that may be given up is drawn in pieces, small enough for a rasterizer on the CPU to
 // come back soon: pixels do not know of each other.
 int rows_at_once(const Device& device, glm::ivec2 size_px) {
-    constexpr int kPixelsOnCpu = 1 << 14, kPixelsOnCard = 1 << 18;
+    constexpr int kPixelsOnCpu = 1 << 12, kPixelsOnCard = 1 << 18;
     if (!device.can_be_stopped())
         return size_px.y;
     const int pixels = device.is_on_cpu() ? kPixelsOnCpu : kPixelsOnCard;

@@ -53,7 +53,8 @@ void find_unmapped(Run& run, const SampleQuery& query) {
             if (frame.plan.lamps[k].is_lit)
                 run.report.unmapped_pixels += count_unmapped(
                     frame.device, frame.surfaces.surfaces, frame.scene_buffers.materials,
-                    frame.on_card, {frame.opening.lamps, k, frame.plan, frame.options, query});
+                    frame.on_card, {frame.opening.lamps, k, frame.plan, frame.options, query},
+                    frame.passes);
     });
 }
 

@@ -206,7 +206,7 @@ Rendered Session::render(const Scene& scene,
     if (plan.has_environment)
         throw Error{"cannot render by OpenGL", "environment",
                     "none, or --effect environment=off: the CPU renders it", "one"};
-    const bool has_bias = !options.sampler && options.q > 0;
+    const bool has_bias = !options.sampler && options.q > 0 && options.has_bias_bound;
     result.picture = make_picture(lamps, opening.size_px, {});
     if (has_bias)
         add_bias_layer(result.picture);

@@ -17,8 +17,7 @@ namespace nearfield::render::gpu {
 /// scene, programs, shadow maps and targets of the last sizes stay where they are as long as they
 /// hold. A picture has the same bits whatever was rendered before.
 ///
-/// Belongs to the thread that made it. Headless contexts share a display: no other one may be made
-/// or end while it lives.
+/// Belongs to the thread that made it, in which no other context may become current.
 class Session {
   public:
     /// Throws Error as HeadlessContext.

@@ -146,21 +146,17 @@ Buffer make_cells(Device& device,
     return make_buffer_of(device, values, "cells of a lamp's shadow maps");
 }
 
-/// Runs a shader of measurement over width x height; found: at binding 5.
-void measure(const std::string& shader,
+/// Runs a program of measurement over width x height; found: at binding 5.
+void measure(const Program& program,
              const MeasuredShadows& of,
              const Buffer& found,
-             glm::ivec2 size,
-             int cells) {
-    const Program program = link_compute(shader, shadow_defines(of.maps.key.options));
+             glm::ivec2 size) {
     bind_surfaces(of.surfaces, of.materials);
     bind_slab(of.slab_textures);
     bind_shadows(of.maps, of.slab);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, found.id());
-    if (cells > 0)
-        glProgramUniform1i(program.id(), kCells, cells);
     dispatch_2d(program, size.x, size.y);
-    of.device.check(shader);
+    of.device.check("a measurement of shadow maps");
 }
 
 }  // namespace
@@ -214,10 +210,14 @@ void bind_shadows(const ShadowMaps& maps, std::size_t slab) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, maps.cells[slab].id());
 }
 
-int count_unmapped(const MeasuredShadows& of) {
+Program link_unmapped(const ShadowMapOptions& options) {
+    return link_compute("render/shaders/shadow_unmapped.comp", shadow_defines(options));
+}
+
+int count_unmapped(const MeasuredShadows& of, const Program& unmapped) {
     const Buffer count =
         make_zero_buffer(of.device, sizeof(glm::uvec4), "the count of unmapped pixels");
-    measure("render/shaders/shadow_unmapped.comp", of, count, of.surfaces.size_px, 0);
+    measure(unmapped, of, count, of.surfaces.size_px);
     return static_cast<int>(read_buffer<std::uint32_t>(count, 1).front());
 }
 
@@ -227,7 +227,10 @@ std::vector<float> cell_visibilities(const MeasuredShadows& of) {
     const std::size_t count = static_cast<std::size_t>(cells) * static_cast<std::size_t>(pixels);
     const Buffer found =
         make_zero_buffer(of.device, count * sizeof(float), "visibilities of cells");
-    measure("render/shaders/shadow_visibility.comp", of, found, {cells, pixels}, cells);
+    const Program program =
+        link_compute("render/shaders/shadow_visibility.comp", shadow_defines(of.maps.key.options));
+    glProgramUniform1i(program.id(), kCells, cells);
+    measure(program, of, found, {cells, pixels});
     return read_buffer<float>(found, count);
 }
 

@@ -84,8 +84,10 @@ struct MeasuredShadows {
 };
 
 /// Pixels between the planes S and U, in the space that the slab may light, that some cell's map
-/// does not show: its light reaches them unshadowed. Beyond S there are none.
-int count_unmapped(const MeasuredShadows& of);
+/// does not show: its light reaches them unshadowed. Beyond S there are none. unmapped: of the
+/// maps' options.
+Program link_unmapped(const ShadowMapOptions& options);
+int count_unmapped(const MeasuredShadows& of, const Program& unmapped);
 
 /// What shadows.glsl says of every pixel and cell of a slab: visibility 0 ... 1, -1 where the cell
 /// has a map that does not show the pixel (it counts as lit), 1 where nothing is seen.

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -14,6 +15,7 @@
 namespace nearfield::viewer {
 namespace {
 
+constexpr const char* kScene = "soak.gltf";
 constexpr int kSteps = 2000, kWarm = 600;
 
 double resident_mib() {
@@ -50,7 +52,9 @@ struct Soak {
                    : lamps[static_cast<std::size_t>(pick(static_cast<int>(lamps.size())))].id;
     }
     void load() {
-        take(viewer, {document_of(test::with_second_lamp(test::uneven_scene()), ""), {}});
+        if (!std::filesystem::exists(kScene))
+            write_scene(test::with_second_lamp(test::uneven_scene()), kScene);
+        take(viewer, open_document(kScene));
     }
     void edit_something() {
         const int id = lamp();

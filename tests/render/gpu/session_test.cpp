@@ -10,6 +10,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <thread>
+
 namespace nearfield::render {
 namespace {
 
@@ -37,8 +40,8 @@ void expect_equal(const Picture& a, const Picture& b, const std::string& what) {
         EXPECT_EQ(a.layers[k].values, b.layers[k].values) << what << ": " << a.layers[k].name;
 }
 
-/// A picture, and how it is when it is the first. Made before there is a session: headless contexts
-/// share their display, and one is alive at a time.
+/// A picture, and how it is when it is the first. Made before there is a session, since a thread
+/// has one context that is current.
 struct Case {
     std::string what;
     Scene scene;
@@ -127,13 +130,40 @@ TEST(GlSession, APictureThatIsGivenUpLeavesNothingBehind) {
 TEST(GlSession, WhatMayBeGivenUpIsTheSameLight) {
     const Scene scene = test::uneven_scene();
     RenderOptions options = small_options();
-    options.size_px = {256, 192};  // three bands on a rasterizer
+    options.size_px = {256, 192};  // bands on a rasterizer
     const Picture at_once = render_gl(scene, options).picture;
     RenderHooks hooks;
     hooks.is_stopped = [] { return false; };
     gpu::Session session;
     expect_equal(session.render(scene, options, begin_call(options, hooks)).picture, at_once,
                  "in bands");
+}
+
+// What a draft leaves out changes nothing else.
+TEST(GlSession, WithoutTheBiasBoundLightIsTheSame) {
+    const Scene scene = with_second_lamp(test::uneven_scene());
+    gpu::Session session;
+    RenderOptions options = small_options(8);
+    const Picture with = render_by(session, scene, options).picture;
+    options.has_bias_bound = false;
+    const Rendered without = render_by(session, scene, options);
+    EXPECT_EQ(with.layers.size(), without.picture.layers.size() + 1);
+    for (std::size_t k = 0; k < without.picture.layers.size(); ++k)
+        EXPECT_EQ(without.picture.layers[k].values, with.layers[k].values) << with.layers[k].name;
+    EXPECT_EQ(without.report.sampling.bias_mean_rel, 0.0);
+}
+
+// Of several in one process, which share their display, each ends alone.
+TEST(GlSession, OutlivesOthers) {
+    const Scene scene = test::plain_scene();
+    auto first = std::make_unique<gpu::Session>();
+    Picture in_thread;
+    std::thread([&] {
+        gpu::Session second;
+        std::thread([&] { gpu::Session third; }).join();
+        in_thread = render_by(second, scene, small_options()).picture;
+    }).join();
+    expect_equal(render_by(*first, scene, small_options()).picture, in_thread, "after others");
 }
 
 TEST(GlSession, MemoryStaysAsItIs) {

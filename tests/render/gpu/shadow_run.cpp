@@ -67,7 +67,8 @@ std::vector<float> mapped(Device& device,
 
 int count_unmapped(Device& device, const ShadowRun& run, std::size_t slab) {
     return count_unmapped({device, run.surfaces.surfaces, run.buffers.materials,
-                           textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab});
+                           textures_of(device, run.lamps.lamps[0].slabs[slab]), run.maps, slab},
+                          link_unmapped(run.maps.key.options));
 }
 
 TracedCells trace_cells(const ShadowRun& run, int side, std::size_t slab_index) {
