@@ -181,10 +181,8 @@ void handle_look_keys(Viewer& viewer) {
         viewer.tool = Tool::Aim;
     if (is_pressed(GLFW_KEY_M))
         viewer.tool = viewer.tool == Tool::Measure ? Tool::Select : Tool::Measure;
-    if (is_pressed(GLFW_KEY_K) && viewer.frame) {
-        viewer.kept = KeptState{viewer.frame, viewer.mixed, viewer.history.now};
-        viewer.is_stale = true;
-    }
+    if (is_pressed(GLFW_KEY_K))
+        keep_state(viewer);
 }
 
 }  // namespace

@@ -167,6 +167,7 @@ void draw_panels(Viewer& viewer, PanelState& state, glm::vec2 window) {
         ImGui::PushItemWidth(0.55F * width);
         draw_lamps_panel(viewer, state);
         draw_files_panel(viewer, state);
+        draw_record_panel(viewer, state);
         ImGui::PopItemWidth();
         ImGui::End();
         ImGui::SetNextWindowPos(ImVec2(window.x - width, 0));

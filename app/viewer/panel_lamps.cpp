@@ -7,6 +7,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <array>
 
 namespace nearfield::viewer {
@@ -184,15 +185,31 @@ void draw_files_panel(Viewer& viewer, PanelState& state) {
     if (ImGui::Button("open / add") && state.commands.open)
         state.commands.open(state.open_path);
     mark(state, "open");
+}
+
+void draw_record_panel(const Viewer& viewer, PanelState& state) {
+    if (!ImGui::CollapsingHeader("Record"))
+        return;
+    const Commands& commands = state.commands;
     ImGui::InputText("##picture", &state.picture_path);
     ImGui::SameLine();
-    if (ImGui::Button("write picture") && state.commands.write_picture)
-        state.commands.write_picture(state.picture_path);
+    if (ImGui::Button("write picture") && commands.write_picture)
+        commands.write_picture(state.picture_path);
     mark(state, "write picture");
-    ImGui::InputText("##frames", &state.frames_prefix);
+    ImGui::InputText("frames", &state.frames_prefix);
+    mark(state, "frames");
+    ImGui::InputInt("how many", &state.frames);
+    state.frames = std::clamp(state.frames, 1, 9999);
+    if (ImGui::Button("turntable") && commands.record_turntable)
+        commands.record_turntable(state.frames_prefix, state.frames);
+    mark(state, "turntable");
     ImGui::SameLine();
-    if (ImGui::Button("turntable") && state.commands.record_turntable)
-        state.commands.record_turntable(state.frames_prefix, state.frames);
+    if (ImGui::Button("sweep of the lamp") && commands.record_sweep)
+        commands.record_sweep(state.frames_prefix, state.frames, state.sweep_deg);
+    mark(state, "sweep");
+    ImGui::InputDouble("deg of sweep", &state.sweep_deg, 1.0, 10.0, "%.1f");
+    if (viewer.progress.whole_left > 0)
+        ImGui::Text("%d more to be written", viewer.progress.whole_left);
 }
 
 }  // namespace nearfield::viewer

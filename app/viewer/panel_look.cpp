@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -98,14 +99,17 @@ void draw_look_panel(Viewer& viewer, PanelState& state) {
 void draw_compare_panel(Viewer& viewer, PanelState& state) {
     if (!ImGui::CollapsingHeader("Compare"))
         return;
-    if (ImGui::Button("keep this state") && viewer.frame) {
-        viewer.kept = KeptState{viewer.frame, viewer.mixed, viewer.history.now};
-        viewer.is_stale = true;
-    }
+    if (ImGui::Button("keep this state"))
+        keep_state(viewer);
     mark(state, "keep");
+    ImGui::InputTextWithHint("##reference", "picture, .exr", &state.reference_path);
+    mark(state, "reference path");
+    ImGui::SameLine();
+    if (ImGui::Button("compare") && state.commands.compare_with)
+        state.commands.compare_with(state.reference_path);
+    mark(state, "compare");
     if (!viewer.kept)
         return;
-    ImGui::SameLine();
     if (ImGui::Button("forget it")) {
         viewer.kept.reset();
         viewer.is_stale = true;
@@ -120,11 +124,13 @@ void draw_compare_panel(Viewer& viewer, PanelState& state) {
     if (ImGui::Checkbox("error map", &viewer.shows_map))
         viewer.is_stale = true;
     if (viewer.difference)
-        ImGui::Text("to what was kept: Lab %.4g, relative RMS %.3g %%,\n95th percentile %.3g %%",
-                    viewer.difference->lab, 100.0 * viewer.difference->rms_rel,
-                    100.0 * viewer.difference->p95_rel);
+        ImGui::Text("left of the split: %s\nLab %.4g, relative RMS %.3g %%, 95 %%: %.3g %%",
+                    viewer.kept->name.c_str(), viewer.difference->lab,
+                    100.0 * viewer.difference->rms_rel, 100.0 * viewer.difference->p95_rel);
     else
-        ImGui::TextDisabled("of another size: wait until it is refined");
+        ImGui::TextDisabled("%s: %d x %d px; no numbers\nuntil both are of one size",
+                            viewer.kept->name.c_str(), viewer.kept->mixed.size_px.x,
+                            viewer.kept->mixed.size_px.y);
 }
 
 }  // namespace nearfield::viewer

@@ -20,13 +20,17 @@ struct Commands {
     std::function<void()> try_dials;
     std::function<void(const std::string& path)> write_picture;  // .png or .exr, by the renderer
     std::function<void(const std::string& prefix, int frames)> record_turntable;
+    std::function<void(const std::string& prefix, int frames, double span_deg)> record_sweep;
+    std::function<void(const std::string& path)> compare_with;  // an .exr
     std::function<void()> quit;
 };
 
 struct PanelState {
     Commands commands;
-    std::string open_path, save_path, picture_path = "picture.png", frames_prefix = "turntable";
+    std::string open_path, save_path, picture_path = "picture.png", frames_prefix = "frames",
+                                      reference_path;
     int frames = 36;
+    double sweep_deg = 10;
     std::optional<int> dial;  // while it is held
     /// Where widgets are in the window, by name: for those that drive it.
     std::map<std::string, glm::vec4> places;  // left, top, right, bottom
@@ -40,6 +44,7 @@ void draw_panels(Viewer& viewer, PanelState& state, glm::vec2 window);
 
 void draw_lamps_panel(Viewer& viewer, PanelState& state);
 void draw_files_panel(Viewer& viewer, PanelState& state);
+void draw_record_panel(const Viewer& viewer, PanelState& state);
 void draw_look_panel(Viewer& viewer, PanelState& state);
 void draw_compare_panel(Viewer& viewer, PanelState& state);
 void draw_dial_panel(Viewer& viewer, PanelState& state);

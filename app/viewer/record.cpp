@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/viewer/record.h"
 
+#include "app/viewer/pose.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/error.h"
 #include "formats/files/image.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
+
+#include <utility>
+#include <vector>
 
 namespace nearfield::viewer {
 namespace {
@@ -48,6 +52,40 @@ void ask(Worker& worker,
     });
 }
 
+/// One exposure for all frames.
+render::DisplayOptions fixed_exposure(const Viewer& viewer) {
+    render::DisplayOptions display = viewer.look.display;
+    display.exposure_ev = display.exposure_ev.value_or(viewer.developed.exposure_ev);
+    return display;
+}
+
+std::string frame_name(const std::string& prefix, int frame) {
+    return fmt::format("{}_{:03}", prefix, frame + 1);
+}
+
+void ask(Worker& worker,
+         std::vector<Request> frames,
+         const render::DisplayOptions& display,
+         const std::string& prefix) {
+    for (std::size_t k = 0; k < frames.size(); ++k)
+        ask(worker, std::move(frames[k]), display,
+            frame_name(prefix, static_cast<int>(k)) + ".png");
+}
+
+/// What makes a frame again without a window, a line of a script.
+std::string command_of(const Request& request,
+                       const render::DisplayOptions& display,
+                       const std::string& scene,
+                       const std::string& frame) {
+    return fmt::format(
+        "nearfield render '{}' --device gl{} --camera '{}' --width {} --height {} "
+        "--tonemap {} --exposure-ev {} -o '{}.exr' --png '{}.png'\n",
+        scene, options_text(dials()[static_cast<std::size_t>(request.dial)].quality),
+        request.camera.name, request.size_px.x, request.size_px.y,
+        display.tonemap == render::ToneMap::Papers ? "papers" : "filmic", *display.exposure_ev,
+        frame, frame);
+}
+
 }  // namespace
 
 void write_shown(const Viewer& viewer, const std::string& path) {
@@ -72,26 +110,52 @@ void record_turntable(Worker& worker,
                       const std::string& prefix,
                       int frames) {
     Document document = viewer.history.now;
-    // One exposure for all of them.
-    render::DisplayOptions display = viewer.look.display;
-    display.exposure_ev = display.exposure_ev.value_or(viewer.developed.exposure_ev);
+    const render::DisplayOptions display = fixed_exposure(viewer);
     const std::string scene = prefix + ".gltf";
     std::string script = "#!/bin/sh\n# Renders the frames of a turntable.\n";
+    std::vector<Request> requests;
     for (int k = 0; k < frames; ++k) {
         Request request = request_of(viewer, size_px);
         request.camera = orbited(viewer.view, glm::two_pi<double>() * k / frames, 0.0).camera;
         request.camera.name = fmt::format("turntable {:03}", k + 1);
         document.bookmarks.push_back(request.camera);
-        const std::string frame = fmt::format("{}_{:03}", prefix, k + 1);
-        script += fmt::format(
-            "nearfield render '{}' --device gl{} --camera '{}' --width {} --height {} "
-            "--exposure-ev {} -o '{}.exr' --png '{}.png'\n",
-            scene, options_text(dials()[static_cast<std::size_t>(viewer.dial)].quality),
-            request.camera.name, size_px.x, size_px.y, *display.exposure_ev, frame, frame);
-        ask(worker, std::move(request), display, frame + ".png");
+        script += command_of(request, display, scene, frame_name(prefix, k));
+        requests.push_back(std::move(request));
     }
     save_document(document, scene);
     write_file(script, prefix + ".sh");
+    ask(worker, std::move(requests), display, prefix);
+}
+
+void record_sweep(Worker& worker,
+                  const Viewer& viewer,
+                  glm::ivec2 size_px,
+                  const std::string& prefix,
+                  int frames,
+                  int lamp,
+                  double span_deg) {
+    const EditedLamp* swept = find_lamp(viewer.history.now, lamp);
+    if (swept == nullptr)
+        throw Error{"cannot record a sweep", "lamp", "one that is selected", "none"};
+    const PoseNumbers middle = numbers_of(swept->luminaire.world_from_luminaire);
+    const render::DisplayOptions display = fixed_exposure(viewer);
+    std::string script = "#!/bin/sh\n# Renders the frames of a lamp's sweep.\n";
+    std::vector<Request> requests;
+    for (int k = 0; k < frames; ++k) {
+        PoseNumbers numbers = middle;
+        numbers.yaw_deg += frames > 1 ? span_deg * (k / (frames - 1.0) - 0.5) : 0.0;
+        Request request = request_of(viewer, size_px);
+        request.document = edited(request.document, SetPose{lamp, pose_of(numbers)});
+        request.camera.name = "sweep";
+        Document document = request.document;
+        document.bookmarks.push_back(request.camera);
+        const std::string frame = frame_name(prefix, k);
+        save_document(document, frame + ".gltf");
+        script += command_of(request, display, frame + ".gltf", frame);
+        requests.push_back(std::move(request));
+    }
+    write_file(script, prefix + ".sh");
+    ask(worker, std::move(requests), display, prefix);
 }
 
 }  // namespace nearfield::viewer

@@ -30,4 +30,15 @@ void record_turntable(Worker& worker,
                       const std::string& prefix,
                       int frames);
 
+/// The same with one camera and a lamp that turns about the vertical, evenly from -span/2 to
+/// span/2 of where it is; its partner mirrored. PREFIX_001.png ..., a scene PREFIX_001.gltf ...
+/// each, and PREFIX.sh. Throws Error where no such lamp is there or a scene cannot be written.
+void record_sweep(Worker& worker,
+                  const Viewer& viewer,
+                  glm::ivec2 size_px,
+                  const std::string& prefix,
+                  int frames,
+                  int lamp,
+                  double span_deg);
+
 }  // namespace nearfield::viewer

@@ -43,21 +43,30 @@ struct Run {
     std::shared_ptr<const Frame> shown = nullptr;  // the last
     std::future<Opened> opening = {};
     std::future<void> autosaving = {};
-    double changed_s = 0;  // when the document was seen to differ from the autosave
+    std::string autosaved = {};  // a file of this run's; empty: none
+    double changed_s = 0;   // when the document was seen to differ from the autosave
     int frames_left = kFramesAfterEvent;
     bool is_written = false;  // the screenshots
     Worker worker{&Window::wake};
 };
 
+/// Does it, or says why not.
+template <typename Work>
+void attempt(Run& run, const Work& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        run.viewer.message = error.what();
+    }
+}
+
 void open(Run& run, const std::string& path) {
     if (run.viewer.is_open && !is_scene(path)) {
-        try {
+        attempt(run, [&] {
             glm::dmat4 pose(1.0);
             pose[3] = glm::dvec4(pivot_of(run.viewer.view), 1.0);
             change(run.viewer, Add{lamp_of(path, pose)});
-        } catch (const Error& error) {
-            run.viewer.message = error.what();
-        }
+        });
         return;
     }
     run.viewer.message = fmt::format("opening {} ...", path);
@@ -111,8 +120,19 @@ void show_frame(Run& run) {
     ++run.frames_left;
 }
 
+bool is_running(const std::future<void>& work) {
+    return work.valid() && work.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+/// Keeps unsaved work in a file beside the scene's, until it is saved.
 void autosave(Run& run) {
     Viewer& viewer = run.viewer;
+    if (is_running(run.autosaving))
+        return;
+    if (!is_unsaved(viewer) && !run.autosaved.empty()) {
+        std::error_code failed;
+        fs::remove(std::exchange(run.autosaved, {}), failed);
+    }
     const bool is_due = viewer.changes != viewer.autosaved_changes && is_unsaved(viewer) &&
                         !viewer.history.now.path.empty();
     if (!is_due) {
@@ -124,6 +144,7 @@ void autosave(Run& run) {
     if (now_s() - run.changed_s < kAutosave_s)
         return;
     viewer.autosaved_changes = viewer.changes;
+    run.autosaved = autosave_path(viewer.history.now.path);
     run.autosaving = std::async(std::launch::async, [document = viewer.history.now] {
         try {
             save_document(document, autosave_path(document.path));
@@ -194,7 +215,18 @@ void bind_commands(Run& run) {
         write_picture_by(run.worker, run.viewer, run.window.size_px(), path);
     };
     commands.record_turntable = [&run](const std::string& prefix, int frames) {
-        record_turntable(run.worker, run.viewer, run.window.size_px(), prefix, frames);
+        attempt(run, [&] {
+            record_turntable(run.worker, run.viewer, run.window.size_px(), prefix, frames);
+        });
+    };
+    commands.record_sweep = [&run](const std::string& prefix, int frames, double span_deg) {
+        attempt(run, [&] {
+            record_sweep(run.worker, run.viewer, run.window.size_px(), prefix, frames,
+                         run.viewer.selected.value_or(-1), span_deg);
+        });
+    };
+    commands.compare_with = [&run](const std::string& path) {
+        attempt(run, [&] { compare_with(run.viewer, path); });
     };
     run.window.on_drop([&run](const std::string& path) { open(run, path); });
 }
@@ -237,6 +269,9 @@ void run_viewer(const ViewerOptions& options) {
         draw(run);
         autosave(run);
     }
+    if (run.autosaving.valid())
+        run.autosaving.wait();
+    autosave(run);  // which removes its file where all is saved
     if (options.remembers)
         remember_place(run.window.place());
 }

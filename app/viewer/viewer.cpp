@@ -2,12 +2,14 @@
 #include "app/viewer/viewer.h"
 
 #include "formats/files/error.h"
+#include "formats/files/image.h"
 #include "formats/shared/tonemap.glsl.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nearfield::viewer {
 namespace {
@@ -105,6 +107,39 @@ void save(Viewer& viewer, const std::string& path) {
     viewer.history.now = save_document(viewer.history.now, path);
     viewer.saved_changes = viewer.autosaved_changes = viewer.changes;
     viewer.message = fmt::format("saved {}", path);
+}
+
+void keep_state(Viewer& viewer) {
+    if (!viewer.frame)
+        return;
+    viewer.kept = KeptState{"what was kept", viewer.frame, viewer.mixed};
+    viewer.is_stale = true;
+}
+
+void compare_with(Viewer& viewer, const std::string& path) {
+    Picture picture = read_picture(path);
+    const auto layer = [&](const std::string& name, std::size_t channels) {
+        const auto found = std::find_if(
+            picture.layers.begin(), picture.layers.end(),
+            [&](const Layer& one) { return one.name == name && one.channels.size() == channels; });
+        return found == picture.layers.end() ? std::vector<float>() : std::move(found->values);
+    };
+    const auto pixels = static_cast<std::size_t>(picture.size_px.x * picture.size_px.y);
+    Frame frame;
+    frame.size_px = picture.size_px;
+    frame.depth_m = layer("depth", 1);
+    frame.depth_m.resize(pixels, 1.0F);
+    Mixed mixed{picture.size_px, layer("", 3), layer("irradiance", 3), layer("sigma", 1),
+                layer("bias_bound", 1)};
+    if (mixed.radiance.empty())
+        throw Error{"cannot compare", path, "channels R, G and B", "none of that name"};
+    mixed.irradiance.resize(3 * pixels);
+    mixed.sigma.resize(pixels);
+    mixed.bias.resize(pixels);
+    viewer.kept =
+        KeptState{path, std::make_shared<const Frame>(std::move(frame)), std::move(mixed)};
+    viewer.is_stale = true;
+    viewer.message.clear();
 }
 
 Request request_of(const Viewer& viewer, glm::ivec2 size_px) {

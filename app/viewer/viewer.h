@@ -25,11 +25,11 @@ namespace nearfield::viewer {
 /// What a click in the picture does next.
 enum class Tool { Select, Aim, Measure };
 
-/// A state that was kept to compare with.
+/// A state that was kept to compare with, or a picture's file.
 struct KeptState {
+    std::string name;
     std::shared_ptr<const Frame> frame;
     Mixed mixed;
-    Document document;
 };
 
 /// What was shown last, for the graph.
@@ -83,6 +83,12 @@ int begin_gesture(Viewer& viewer);
 bool is_unsaved(const Viewer& viewer);
 /// Throws Error.
 void save(Viewer& viewer, const std::string& path);
+
+/// Compares with what is shown from now on.
+void keep_state(Viewer& viewer);
+/// Compares with a picture that `nearfield render` wrote, .exr. Throws Error where it cannot be
+/// read or has no default layer of three channels.
+void compare_with(Viewer& viewer, const std::string& path);
 
 /// What is to be rendered for a picture of that size, numbered.
 Request request_of(const Viewer& viewer, glm::ivec2 size_px);

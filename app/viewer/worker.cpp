@@ -71,7 +71,8 @@ void Worker::try_dials(Request request) {
 void Worker::render(Request request, std::function<void(render::Rendered)> use) {
     {
         const std::lock_guard lock(mutex_);
-        whole_.emplace_back(std::move(request), std::move(use));
+        whole_.push_back({std::move(request), std::move(use)});
+        ++progress_.whole_left;
         ++ticket_;
     }
     asked_.notify_one();
@@ -95,6 +96,12 @@ bool Worker::is_superseded(int ticket) const {
     return ticket != ticket_;
 }
 
+/// Whether somebody waits for something other than whole pictures.
+bool Worker::is_interrupted() const {
+    const std::lock_guard lock(mutex_);
+    return is_ending_ || wanted_ || dials_wanted_;
+}
+
 bool Worker::stays_wanted(int ticket) {
     std::unique_lock lock(mutex_);
     return !asked_.wait_for(lock, kStill, [&] { return is_ending_ || ticket != ticket_; });
@@ -110,7 +117,7 @@ struct Worker::Thread {
 
     void refine(const Request& request, int ticket);
     void try_dials(const Request& request, int ticket);
-    void render_whole(const Request& request, const std::function<void(render::Rendered)>& use);
+    void render_whole(const Whole& whole);
     /// Does it, or tells why not.
     void attempt(const std::function<void()>& work);
     void run(const Work& work);
@@ -161,20 +168,28 @@ void Worker::Thread::try_dials(const Request& request, int ticket) {
     worker.tell([&](Progress& progress) { progress.trials = trials; });
 }
 
-void Worker::Thread::render_whole(const Request& request,
-                                  const std::function<void(render::Rendered)>& use) {
+void Worker::Thread::render_whole(const Whole& whole) {
+    const Request& request = whole.request;
     Scene scene = edited_scene(request.document);
     scene.cameras.insert(scene.cameras.begin(), request.camera);
     render::RenderOptions options =
         options_of(dials()[static_cast<std::size_t>(request.dial)].quality, request.size_px);
     options.camera = request.camera.name;
-    use(session.render(scene, options, render::begin_call(options, {})));
+    render::RenderHooks hooks;
+    hooks.is_stopped = [this] { return worker.is_interrupted(); };
+    try {
+        whole.use(session.render(scene, options, render::begin_call(options, hooks)));
+    } catch (const render::Stopped&) {
+        const std::lock_guard lock(worker.mutex_);
+        worker.whole_.push_front(whole);
+        throw;
+    }
 }
 
 /// What was asked for since the last time.
 struct Worker::Work {
     std::optional<Request> shown, dials;
-    std::vector<std::pair<Request, std::function<void(render::Rendered)>>> whole;
+    std::optional<Whole> whole;
     int ticket = 0;
 };
 
@@ -183,8 +198,13 @@ std::optional<Worker::Work> Worker::wait_for_work() {
     asked_.wait(lock, [this] { return is_ending_ || wanted_ || dials_wanted_ || !whole_.empty(); });
     if (is_ending_)
         return std::nullopt;
-    return Work{std::exchange(wanted_, std::nullopt), std::exchange(dials_wanted_, std::nullopt),
-                std::exchange(whole_, {}), ticket_};
+    Work work{std::exchange(wanted_, std::nullopt), std::exchange(dials_wanted_, std::nullopt),
+              std::nullopt, ticket_};
+    if (!work.shown && !work.dials && !whole_.empty()) {
+        work.whole = std::move(whole_.front());
+        whole_.pop_front();
+    }
+    return work;
 }
 
 void Worker::Thread::attempt(const std::function<void()>& work) {
@@ -209,8 +229,15 @@ void Worker::Thread::run(const Work& work) {
         last = work.shown;
         is_complete = false;
     }
-    for (const auto& [request, use] : work.whole)
-        attempt([&] { render_whole(request, use); });
+    if (work.whole) {
+        attempt([&] { render_whole(*work.whole); });
+        int left = 0;
+        worker.tell([&](Progress& progress) {
+            progress.whole_left = left = static_cast<int>(worker.whole_.size());
+        });
+        if (left > 0)
+            return;
+    }
     if (work.dials)
         attempt([&] { try_dials(*work.dials, work.ticket); });
     // Also what trials and whole pictures have interrupted.

@@ -9,13 +9,13 @@
 #include <glm/glm.hpp>
 
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace nearfield::viewer {
@@ -48,6 +48,7 @@ struct Progress {
     std::string device;                  // OpenGL's name
     std::vector<DialTrial> trials;       // by dial; empty: none asked for, or not yet done
     int draft_divisor = 8;
+    int whole_left = 0;  // whole pictures that are to be rendered
 };
 
 class Worker {
@@ -65,17 +66,23 @@ class Worker {
     /// Fills Progress::trials for what is shown.
     void try_dials(Request request);
     /// Renders a whole picture, as `nearfield render --device gl` does, and hands it on in the
-    /// thread; after it the last request is taken up again. Errors go to Progress::error.
+    /// thread; one after the other, and begun again where something else was asked for in between.
+    /// After them the last request is taken up again. Errors go to Progress::error.
     void render(Request request, std::function<void(render::Rendered)> use);
     Progress progress() const;
 
   private:
     struct Work;
+    struct Whole {
+        Request request;
+        std::function<void(render::Rendered)> use;
+    };
     struct Thread;  // what lives in the thread
     std::optional<Work> wait_for_work();
     void loop();
     void tell(const std::function<void(Progress&)>& change);
     bool is_superseded(int ticket) const;
+    bool is_interrupted() const;
     /// Waits a moment: whether nothing else is asked for in it.
     bool stays_wanted(int ticket);
 
@@ -83,7 +90,7 @@ class Worker {
     mutable std::mutex mutex_;
     std::condition_variable asked_;
     std::optional<Request> wanted_, dials_wanted_;
-    std::vector<std::pair<Request, std::function<void(render::Rendered)>>> whole_;
+    std::deque<Whole> whole_;
     int ticket_ = 0;  // rises with every request
     bool is_ending_ = false;
     Progress progress_;
