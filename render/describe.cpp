@@ -177,6 +177,8 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
                           {"device", is_gl ? "gl" : "cpu"},
                           {"effect", forced_effects(options.effects)},
                           {"sigma-measured", options.sigma_measured ? "true" : "false"}};
+    if (options.shows_lamps)
+        provenance.options.emplace_back("show-lamps", "true");
     if (options.time_s > 0.0)
         provenance.options.emplace_back(
             "time-ms", fmt::format("{} (passes and q depend on the clock)", 1e3 * options.time_s));

@@ -112,6 +112,8 @@ struct RenderOptions {
     /// the time of a light sum.
     bool sigma_measured = false;
 
+    bool shows_lamps = false;  // themselves, where the camera looks into them (seen_lamps.h)
+
     Effects effects;
     EnvironmentOptions environment;
     ShadowMapOptions shadow_maps;  // OpenGL alone

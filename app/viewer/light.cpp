@@ -62,6 +62,8 @@ Mixed mix(const Frame& frame, const std::vector<LampGain>& gains) {
         for (std::size_t k = 0; k < light.bias.size(); ++k)
             mixed.bias[k] += most * light.bias[k];
     }
+    for (std::size_t l = 0; l < gains.size(); ++l)  // last, as the renderer
+        add_scaled(frame.lamps[l]->seen, gains[l].factor, mixed.radiance);
     return mixed;
 }
 

@@ -23,6 +23,7 @@ struct LampLight {
     double dim = 1.0;                         // that it was rendered with; tint: none
     std::vector<float> radiance, irradiance;  // R, G, B
     std::vector<float> sigma, bias;           // of radiance Y; bias empty where sums are exact
+    std::vector<float> seen;  // radiance of the lamp itself, R, G, B, beside that; empty: none
 };
 
 /// What was rendered of a view.

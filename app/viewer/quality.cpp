@@ -2,6 +2,7 @@
 #include "app/viewer/quality.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nearfield::viewer {
 namespace {
@@ -46,9 +47,11 @@ std::vector<Quality> stages_of(int dial, int draft_divisor) {
 }
 
 int next_draft_divisor(int divisor, double time_s, double wanted_s) {
-    if (time_s > 1.3 * wanted_s)
-        return std::min(divisor + 1, 16);
-    // The pixels of the next finer one.
+    constexpr int kCoarsest = 16;
+    if (time_s > 1.3 * wanted_s)  // at once: a hand is waiting
+        return std::min(static_cast<int>(std::ceil(divisor * std::sqrt(time_s / wanted_s))),
+                        kCoarsest);
+    // Finer by a step. The pixels of the next finer one.
     const double ratio = static_cast<double>(divisor) / std::max(divisor - 1, 1);
     return time_s * ratio * ratio < 0.9 * wanted_s ? std::max(divisor - 1, 1) : divisor;
 }
@@ -62,6 +65,7 @@ render::RenderOptions options_of(const Quality& quality, glm::ivec2 size_px) {
     options.shadow_maps = quality.shadow_maps;
     options.effects.gloss = quality.has_gloss ? render::Switch::Auto : render::Switch::Off;
     options.is_displayed = true;
+    options.shows_lamps = true;
     return options;
 }
 

@@ -34,8 +34,8 @@ constexpr int kDefaultDial = 3;
 /// pixels; the picture itself. Those that would be no cheaper than the next are left out.
 std::vector<Quality> stages_of(int dial, int draft_divisor);
 
-/// The divisor of the next draft after one of `time_s`, so that drafts take about `wanted_s`: one
-/// step at a time, within 1 ... 16.
+/// The divisor of the next draft after one of `time_s`, so that drafts take about `wanted_s`:
+/// coarser at once, finer a step at a time, within 1 ... 16.
 int next_draft_divisor(int divisor, double time_s, double wanted_s);
 
 /// What a picture of these is asked for, for a window of that size.

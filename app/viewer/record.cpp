@@ -78,7 +78,7 @@ std::string command_of(const Request& request,
                        const std::string& scene,
                        const std::string& frame) {
     return fmt::format(
-        "nearfield render '{}' --device gl{} --camera '{}' --width {} --height {} "
+        "nearfield render '{}' --device gl --show-lamps{} --camera '{}' --width {} --height {} "
         "--tonemap {} --exposure-ev {} -o '{}.exr' --png '{}.png'\n",
         scene, options_text(dials()[static_cast<std::size_t>(request.dial)].quality),
         request.camera.name, request.size_px.x, request.size_px.y,

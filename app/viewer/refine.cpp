@@ -4,6 +4,7 @@
 #include "app/viewer/worker.h"
 #include "formats/files/provenance.h"
 #include "render/film.h"
+#include "render/seen_lamps.h"
 
 #include <algorithm>
 #include <utility>
@@ -105,11 +106,18 @@ void Refiner::render_lamp(const Scene& scene,
     auto light = std::make_shared<LampLight>();
     light->lamp = edited.id;
     light->dim = edited.luminaire.dim;
-    light->radiance = std::move(layers[render::kRadiance].values);
+    const auto lit_before = static_cast<std::size_t>(
+        std::count_if(request.document.lamps.begin(),
+                      request.document.lamps.begin() + static_cast<std::ptrdiff_t>(*lamp), is_lit));
+    light->radiance = std::move(layers[render::kFirstLamp + lit_before].values);
     light->irradiance = std::move(layers[render::kIrradiance].values);
     light->sigma = std::move(layers[render::kSigma].values);
-    if (kept.quality.q > 0 && kept.quality.has_bias_bound)
-        light->bias = std::move(layers.back().values);
+    const auto seen = render::find_layer(rendered.picture, render::kSeenLamps);
+    if (std::any_of(layers[*seen].values.begin(), layers[*seen].values.end(),
+                    [](float value) { return value > 0.0F; }))
+        light->seen = std::move(layers[*seen].values);
+    if (const auto bias = render::find_layer(rendered.picture, "bias_bound"))
+        light->bias = std::move(layers[*bias].values);
     kept.lights[edited.id] = std::move(light);
     kept.rendered.insert_or_assign(edited.id, edited);
 }

@@ -44,7 +44,7 @@ struct Run {
     std::future<Opened> opening = {};
     std::future<void> autosaving = {};
     std::string autosaved = {};  // a file of this run's; empty: none
-    double changed_s = 0;   // when the document was seen to differ from the autosave
+    double changed_s = 0;        // when the document was seen to differ from the autosave
     int frames_left = kFramesAfterEvent;
     bool is_written = false;  // the screenshots
     Worker worker{&Window::wake};

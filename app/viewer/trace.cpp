@@ -75,6 +75,13 @@ void Trace::showed(const Frame& frame, bool is_final) {
                            {"serial", frame.serial},    {"width", frame.size_px.x},
                            {"height", frame.size_px.y}, {"render_ms", 1e3 * frame.time_s},
                            {"final", is_final}};
+    const render::RenderReport& report = frame.report;
+    for (const render::PlannedPass& pass : report.plan.passes)
+        for (const render::PassReport& cost : report.costs)
+            if (cost.id == pass.id)
+                line["passes_ms"][pass.name] = 1e3 * cost.time_s;
+    line["load_ms"] = 1e3 * report.load_s;
+    line["build_ms"] = 1e3 * report.build_s;
     const auto oldest = asked_ms_.begin();
     if (oldest != asked_ms_.end() && oldest->first <= frame.serial)
         line["feedback_ms"] = now_ms() - oldest->second;

@@ -21,9 +21,10 @@ glm::ivec2 pixel_at(const Frame& frame, glm::dvec2 at) {
 }
 
 void add_shot(Viewer& viewer) {
-    viewer.shots.push_back({viewer.frame->time_s, viewer.frame->knows_error()
-                                                      ? std::optional(error_of(viewer.mixed))
-                                                      : std::nullopt});
+    viewer.shots.push_back(
+        {viewer.frame->time_s, viewer.frame->knows_error()
+                                   ? std::optional(error_of(*viewer.frame, viewer.mixed))
+                                   : std::nullopt});
     if (viewer.shots.size() > kMostShots)
         viewer.shots.pop_front();
 }
@@ -150,10 +151,15 @@ const std::string& said(const Viewer& viewer) {
     return viewer.progress.error.empty() ? viewer.message : viewer.progress.error;
 }
 
-double error_of(const Mixed& mixed) {
+double error_of(const Frame& frame, const Mixed& mixed) {
+    Layer depth{"depth", {"Z"}, frame.depth_m};  // 0 where a pixel does not count
+    for (const std::shared_ptr<const LampLight>& light : frame.lamps)
+        for (std::size_t k = 0; k < light->seen.size(); ++k)
+            if (light->seen[k] > 0.0F)
+                depth.values[k / 3] = 0.0F;
     const Layer radiance{"", {"R", "G", "B"}, mixed.radiance};
     const Layer sigma{"sigma", {"Y"}, mixed.sigma}, bias{"bias", {"Y"}, mixed.bias};
-    return render::summarize_noise(radiance, sigma, &bias).error_rel();
+    return render::summarize_noise(radiance, sigma, &bias, &depth).error_rel();
 }
 
 bool refresh(Viewer& viewer, const Progress& progress) {

@@ -107,7 +107,8 @@ std::optional<RegionStatistics> region_statistics(const Viewer& viewer);
 /// What went wrong, or else the last message.
 const std::string& said(const Viewer& viewer);
 
-/// Estimated error of what is shown: mean of (sigma + bias) / radiance over lit pixels.
-double error_of(const Mixed& mixed);
+/// Estimated error of what is shown: mean of (sigma + bias) / radiance over lit pixels, without
+/// those that see a lamp itself.
+double error_of(const Frame& frame, const Mixed& mixed);
 
 }  // namespace nearfield::viewer

@@ -4,6 +4,7 @@
 #include "formats/files/provenance.h"
 #include "render/cpu/passes.h"
 #include "render/materials.h"
+#include "render/seen_lamps.h"
 #include "render/opening.h"
 
 #include <tbb/info.h>
@@ -71,6 +72,8 @@ Rendered render_cpu(const Scene& scene, const RenderOptions& options, const Rend
         summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma],
                         frame.bias_layer ? &result.picture.layers[*frame.bias_layer] : nullptr,
                         &result.picture.layers[kDepth]);
+    if (options.shows_lamps)
+        add_seen_lamps(opening, options, std::nullopt, result.picture);
     end_call(call, options, report);
     return result;
 }

@@ -8,6 +8,7 @@
 #include "render/gpu/headless.h"
 #include "render/gpu/passes.h"
 #include "render/materials.h"
+#include "render/seen_lamps.h"
 
 #include <algorithm>
 #include <list>
@@ -238,6 +239,8 @@ Rendered Session::render(const Scene& scene,
     draw_shadow_maps(frame, kept_->shadow_pass);
     add_passes(frame, call, result.picture, report);
     read_surfaces(target.surfaces.surfaces, brdfs, result.picture);
+    if (options.shows_lamps)
+        add_seen_lamps(opening, options, frame.only_lamp, result.picture);
     report_costs(frame, target.surface_bytes, report);
     report.q = options.sampler ? 0 : options.q;
     end_call(call, options, report);

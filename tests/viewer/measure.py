@@ -51,6 +51,7 @@ def idle_share(viewer, for_s=10.0):
 def measure(program, scene, lamp, display_name, waits):
     with Viewer(program, display_name, scene, "--size", f"{SIZE[0]}x{SIZE[1]}", "--dial", 0) as viewer:
         first_s, frame = first_picture_s(viewer)
+        viewer.wait_for_frame()  # programs are compiled then
         print(f"first picture        {first_s:6.2f} s after the start, {frame['width']} x {frame['height']}")
         frames = drag_feedback(viewer, lamp)
         feedback_ms = sorted(frame["feedback_ms"] for frame in frames)

@@ -50,6 +50,7 @@ std::string rendered(const std::string& scene, const std::string& camera) {
     render::RenderOptions options;
     options.size_px = kSize;
     options.camera = camera;
+    options.shows_lamps = true;
     const Picture picture = render::render_gl(read_scene(scene), options).picture;
     const render::DisplayOptions display{render::ToneMap::Filmic, kExposure_ev};
     write_png(render::display(picture, display).srgb, kSize, "rendered.png");

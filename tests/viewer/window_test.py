@@ -61,7 +61,7 @@ class WindowTest(ProgramTest):
         with Display(SIZE) as display:
             subprocess.run([PROGRAM, "view", "scene.gltf", "--forget", "--size", "320x180", "--screenshot", "view.png",
                             "--exit"], env={**os.environ, "DISPLAY": display.name}, check=True, timeout=WAIT_S)
-        self.done("render", "scene.gltf", "--device", "gl", "--width", 320, "--height", 180, "-o", "render.exr")
+        self.done("render", "scene.gltf", "--device", "gl", "--show-lamps", "--width", 320, "--height", 180, "-o", "render.exr")
         self.assertEqual(pathlib.Path("view.png").read_bytes(), pathlib.Path("render.png").read_bytes())
 
     def test_still_it_sleeps(self):

@@ -63,6 +63,7 @@ std::vector<float> rendered_radiance(const Request& request) {
     scene.cameras = {request.camera};
     render::RenderOptions options;
     options.size_px = request.size_px;
+    options.shows_lamps = true;
     return test::layer(render::render_gl(scene, options).picture, "").values;
 }
 
@@ -176,7 +177,8 @@ TEST(ViewerWorker, DialsSayWhatTheyCostAndGive) {
 }
 
 TEST(ViewerQuality, DraftsFollowTheirTime) {
-    EXPECT_EQ(next_draft_divisor(8, 0.2, 0.045), 9);
+    EXPECT_EQ(next_draft_divisor(8, 0.07, 0.045), 10);
+    EXPECT_EQ(next_draft_divisor(8, 0.4, 0.045), 16);
     EXPECT_EQ(next_draft_divisor(16, 0.2, 0.045), 16);
     EXPECT_EQ(next_draft_divisor(8, 0.040, 0.045), 8);
     EXPECT_EQ(next_draft_divisor(8, 0.01, 0.045), 7);
