@@ -173,9 +173,10 @@ void add_render_options(CLI::App& sub, RenderCommand& c) {
                "0: all cores; the picture is the same");
     sub.add_flag("--sigma-measured", c.options.sigma_measured,
                  "add the layer sigma_measured, from the lamps' own sigmas; slow");
-    sub.add_flag("--show-lamps", c.options.shows_lamps,
-                 "show lamps themselves where the camera looks into them, in the picture and as the "
-                 "layer lamps");
+    sub.add_flag(
+        "--show-lamps", c.options.shows_lamps,
+        "show lamps themselves where the camera looks into them, in the picture and as the "
+        "layer lamps");
 }
 
 }  // namespace nearfield::app

@@ -4,8 +4,8 @@
 #include "formats/files/provenance.h"
 #include "render/cpu/passes.h"
 #include "render/materials.h"
-#include "render/seen_lamps.h"
 #include "render/opening.h"
+#include "render/seen_lamps.h"
 
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
