@@ -73,11 +73,8 @@ Exposed expose_fresh(Session& session, const Shot& shot) {
         std::string complaint;
         try {
             Exposed exposed = session.bench.camera->expose(session.options.should_stop);
-            const std::string hash = raw_hash(exposed.frame);
-            if (hash != session.last_hash) {
-                session.last_hash = hash;
+            if (raw_hash(exposed.frame) != session.last_hash)
                 return exposed;
-            }
             complaint = "stale frame: equal to the one before";
         } catch (const IncompleteFrame& error) {
             complaint = error.what();
@@ -109,6 +106,8 @@ void take(Session& session, const Shot& shot) {
     record.lamp_voltage_v = readings.lamp_voltage_v;
     record.lamp_current_a = readings.lamp_current_a;
     record.stage_mm = readings.stage_mm;
+    // Not before: where an instrument was lost on the way, the same shot comes again.
+    session.last_hash = raw_hash(exposed.frame);
     session.checks.add(shot, exposed.frame);
     session.result.megabytes += static_cast<double>(exposed.frame.values.size() * 2) * 1e-6;
     ++session.result.frames;

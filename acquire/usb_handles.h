@@ -31,11 +31,6 @@ using UsbHandle = std::unique_ptr<libusb_device_handle, CloseUsb>;
 using UsbConfiguration = std::unique_ptr<libusb_config_descriptor, FreeConfiguration>;
 using UsbList = std::unique_ptr<libusb_device*, FreeList>;
 
-/// Where an instrument's messages go and come from.
-struct UsbtmcEndpoints {
-    std::uint8_t interface = 0, in = 0, out = 0;
-};
-
 /// Throws where a call returned an error: DeviceLost where the device is gone.
 inline void check_usb(int result, const std::string& what, const std::string& where) {
     if (result >= 0)

@@ -2,22 +2,16 @@
 #include "acquire/v4l2_device.h"
 
 #include "acquire/settings.h"
-#include "formats/files/provenance.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <poll.h>
 #include <sys/ioctl.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 namespace nearfield::acquire {
@@ -197,84 +191,6 @@ v4l2_pix_format V4l2Device::set_format(std::uint32_t fourcc, glm::ivec2 size_px)
     check_taken("width, px", size_px.x, taken.width, 0);
     check_taken("height, px", size_px.y, taken.height, 0);
     return taken;
-}
-
-void V4l2Device::start(unsigned buffers) {
-    stop();
-    v4l2_requestbuffers request{};
-    request.count = buffers;
-    request.type = kCapture;
-    request.memory = V4L2_MEMORY_MMAP;
-    require(VIDIOC_REQBUFS, &request, "get buffers");
-    for (unsigned k = 0; k < request.count; ++k) {
-        v4l2_buffer buffer{};
-        buffer.type = kCapture;
-        buffer.memory = V4L2_MEMORY_MMAP;
-        buffer.index = k;
-        require(VIDIOC_QUERYBUF, &buffer, "find a buffer");
-        void* memory = mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, file_,
-                            buffer.m.offset);
-        if (memory == MAP_FAILED)
-            throw Error{"cannot map a buffer", path_, "", std::strerror(errno)};
-        mapped_.emplace_back(static_cast<unsigned char*>(memory), buffer.length);
-    }
-    int type = kCapture;
-    require(VIDIOC_STREAMON, &type, "start the camera");
-    is_streaming_ = true;
-}
-
-void V4l2Device::stop() {
-    int type = kCapture;
-    if (std::exchange(is_streaming_, false))
-        call(VIDIOC_STREAMOFF, &type);  // a device that is gone has stopped
-    const bool had_buffers = !mapped_.empty();
-    for (const std::span<unsigned char> memory : mapped_)
-        munmap(memory.data(), memory.size());
-    mapped_.clear();
-    v4l2_requestbuffers none{};
-    none.type = kCapture;
-    none.memory = V4L2_MEMORY_MMAP;
-    if (had_buffers)
-        call(VIDIOC_REQBUFS, &none);  // or the format stays locked
-}
-
-void V4l2Device::queue(unsigned index) {
-    v4l2_buffer buffer{};
-    buffer.type = kCapture;
-    buffer.memory = V4L2_MEMORY_MMAP;
-    buffer.index = index;
-    require(VIDIOC_QBUF, &buffer, "queue a buffer");
-}
-
-std::optional<V4l2Buffer> V4l2Device::dequeue(double patience_s) {
-    for (const double end_s = now_s() + patience_s;;) {
-        const double left_s = end_s - now_s();
-        pollfd ready{file_, POLLIN, 0};
-        if (poll(&ready, 1, std::max(0, static_cast<int>(left_s * 1000))) < 0 && errno != EINTR)
-            throw Error{"cannot wait for a frame", path_, "", std::strerror(errno)};
-        v4l2_buffer buffer{};
-        buffer.type = kCapture;
-        buffer.memory = V4L2_MEMORY_MMAP;
-        if (call(VIDIOC_DQBUF, &buffer) == 0) {
-            const bool is_monotonic =
-                (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-            const std::span<unsigned char> memory = mapped_.at(buffer.index);
-            return V4l2Buffer{
-                buffer.index,
-                memory.first(std::min<std::size_t>(buffer.bytesused, memory.size())),
-                buffer.sequence,
-                is_monotonic ? static_cast<double>(buffer.timestamp.tv_sec) +
-                                   1e-6 * static_cast<double>(buffer.timestamp.tv_usec)
-                             : 0,
-                (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE,
-                (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0};
-        }
-        if (errno != EAGAIN)
-            fail("take a frame");
-        if (now_s() >= end_s)
-            return std::nullopt;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
 }
 
 }  // namespace nearfield::acquire

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sample_data/devices/grbl.h"
 
+#include "formats/files/error.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <utility>
 
 namespace nearfield::devices {
@@ -24,7 +30,8 @@ double word_of(const std::string& line, char letter, double before) {
 
 }  // namespace
 
-Grbl::Grbl(TestBed& bed, LabState& lab, int number) : lab_(lab) {
+Grbl::Grbl(TestBed& bed, LabState& lab, int number)
+    : lab_(lab), node_(fmt::format("{}/dev/ttyUSB{}", bed.root(), number)) {
     bed.add(fmt::format(
         "P: /devices/pci0000:00/0000:00:14.0/usb1/1-2{0}/1-2{0}:1.0/ttyUSB{0}/tty/ttyUSB{0}\n"
         "N: ttyUSB{0}\nE: DEVNAME=/dev/ttyUSB{0}\nE: SUBSYSTEM=tty\nE: MAJOR=188\nE: MINOR={0}\n"
@@ -39,6 +46,8 @@ Grbl::~Grbl() {
     is_ending_ = true;
     if (thread_.joinable())
         thread_.join();
+    if (second_terminal_ >= 0)
+        close(second_terminal_);
 }
 
 // The terminal's other end hangs up when this one is closed; its number stays the test bed's.
@@ -48,6 +57,24 @@ void Grbl::unplug() {
     const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
     dup2(nothing, terminal_);
     close(nothing);
+}
+
+// The test bed makes no second terminal of one name: this one is our own, under the old name.
+void Grbl::plug_in() {
+    terminal_ = second_terminal_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios raw{};
+    if (terminal_ < 0 || grantpt(terminal_) != 0 || unlockpt(terminal_) != 0 ||
+        tcgetattr(terminal_, &raw) != 0)
+        throw Error{"cannot make a terminal", node_, "", std::strerror(errno)};
+    cfmakeraw(&raw);
+    tcsetattr(terminal_, TCSANOW, &raw);
+    std::array<char, 64> name{};
+    ptsname_r(terminal_, name.data(), name.size());
+    std::filesystem::remove(node_);
+    std::filesystem::create_symlink(name.data(), node_);
+    state_ = "Alarm";
+    is_ending_ = false;
+    thread_ = std::thread([this] { run(); });
 }
 
 void Grbl::run() {

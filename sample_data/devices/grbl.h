@@ -31,8 +31,10 @@ class Grbl {
     Grbl(const Grbl&) = delete;
     Grbl& operator=(const Grbl&) = delete;
 
-    /// Pulls the plug, for good.
+    /// Pulls the plug: the line hangs up.
     void unplug();
+    /// Once: a fresh line of the same name. The controller is where it was, and locked.
+    void plug_in();
 
     GrblFaults faults;
     double speed_up = 1;  // of moves; set before anybody listens
@@ -51,7 +53,8 @@ class Grbl {
     glm::dvec2 position_mm() const;
 
     LabState& lab_;
-    int terminal_ = -1;
+    std::string node_;  // the test bed's file of the device
+    int terminal_ = -1, second_terminal_ = -1;
     std::atomic<bool> is_ending_{false};
     // Of the thread alone.
     std::string line_, state_ = "Alarm";

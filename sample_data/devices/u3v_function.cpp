@@ -2,6 +2,7 @@
 #include "sample_data/devices/u3v_function.h"
 
 #include "sample_data/devices/little_endian.h"
+#include "sample_data/devices/u3v_stream.h"
 #include "sample_data/gige/pixel_format.h"
 
 #include <algorithm>
@@ -12,15 +13,8 @@ namespace {
 
 namespace address = gige::address;
 
-// GenCP's registers, USB3 Vision's, the stream's, the table that tells where the XML is.
-constexpr std::uint32_t kManufacturer = 0x0004, kModel = 0x0044, kVersion = 0x00C4,
-                        kSerial = 0x0144, kUserName = 0x0184, kResponseTime = 0x01CC,
-                        kManifestAddress = 0x01D0, kSbrmAddress = 0x01D8, kSbrm = 0x8000,
-                        kSirm = 0x8100, kManifest = 0x8200, kBootstrapEnd = 0x8300, kXml = 0x100000;
-constexpr std::uint32_t kTextBytes = 64, kMostCommandBytes = 1024;
 constexpr std::uint32_t kOwnStart = 0xA000;
-constexpr std::uint8_t kControlIn = 0x81, kStreamIn = 0x82;
-constexpr std::uint64_t kCommandKey = 0x43563355, kLeaderKey = 0x4C563355, kTrailerKey = 0x54563355;
+constexpr std::uint64_t kCommandKey = 0x43563355;
 constexpr std::uint64_t kReadCommand = 0x0800, kWriteCommand = 0x0802;
 constexpr std::uint16_t kInvalidAddress = 0x8003, kWriteProtect = 0x8004, kNotImplemented = 0x8001;
 
@@ -32,7 +26,7 @@ gige::Feature text_feature(const char* name, std::uint32_t at) {
     feature.kind = gige::Kind::Text;
     feature.address = at;
     feature.access = gige::Access::Read;
-    feature.text_bytes = kTextBytes;
+    feature.text_bytes = kU3vTextBytes;
     return feature;
 }
 
@@ -43,13 +37,19 @@ bool is_moved_by_instruments(const gige::Feature& feature) {
 
 // The network camera's own ones; the standard registers are elsewhere here.
 std::vector<gige::Feature> u3v_features(const gige::Lab& lab) {
-    std::vector<gige::Feature> list{
-        text_feature("DeviceVendorName", kManufacturer), text_feature("DeviceModelName", kModel),
-        text_feature("DeviceVersion", kVersion), text_feature("DeviceSerialNumber", kSerial)};
+    std::vector<gige::Feature> list{text_feature("DeviceVendorName", u3v_address::kManufacturer),
+                                    text_feature("DeviceModelName", u3v_address::kModel),
+                                    text_feature("DeviceVersion", u3v_address::kVersion),
+                                    text_feature("DeviceSerialNumber", u3v_address::kSerial)};
     for (const gige::Feature& feature : gige::features(lab))
         if (feature.address >= kOwnStart && !is_moved_by_instruments(feature))
             list.push_back(feature);
     return list;
+}
+
+std::vector<std::uint8_t> xml_of(const gige::Lab& lab) {
+    const std::string xml = gige::genicam_xml(u3v_features(lab));
+    return {xml.begin(), xml.end()};
 }
 
 }  // namespace
@@ -57,129 +57,12 @@ std::vector<gige::Feature> u3v_features(const gige::Lab& lab) {
 U3vFunction::U3vFunction(LabState& lab, std::string serial)
     : lab_(lab),
       serial_(std::move(serial)),
-      bootstrap_(kBootstrapEnd),
-      device_({}, lab.lab(), [&lab] { return lab.time_s(); }) {
-    const std::string xml = gige::genicam_xml(u3v_features(lab.lab()));
-    xml_.assign(xml.begin(), xml.end());
-    fill_bootstrap();
-}
-
-void U3vFunction::put(std::uint32_t at, std::uint64_t value, std::size_t bytes) {
-    for (std::size_t k = 0; k < bytes; ++k)
-        bootstrap_[at + k] = static_cast<std::uint8_t>(value >> (8 * k));
-}
-
-void U3vFunction::put_text(std::uint32_t at, const std::string& text) {
-    std::copy_n(text.begin(), std::min<std::size_t>(text.size(), kTextBytes - 1),
-                bootstrap_.begin() + at);
-}
-
-void U3vFunction::fill_bootstrap() {
-    put(0, 0x00010001, 4);  // GenCP 1.1
-    put_text(kManufacturer, gige::kVendor);
-    put_text(kModel, gige::kModel);
-    put_text(kVersion, "1");
-    put_text(kSerial, serial_);
-    put_text(kUserName, "");
-    put(kResponseTime, 200, 4);  // ms
-    put(kManifestAddress, kManifest, 8);
-    put(kSbrmAddress, kSbrm, 8);
-    put(kSbrm, 0x00010001, 4);
-    put(kSbrm + 0x14, kMostCommandBytes, 4);
-    put(kSbrm + 0x18, kMostCommandBytes, 4);
-    put(kSbrm + 0x1C, 1, 4);  // stream channels
-    put(kSbrm + 0x20, kSirm, 8);
-    put(kSirm + 0x10, leader({}).size(), 4);
-    put(kSirm + 0x14, trailer({}, 0).size(), 4);
-    put(kManifest, 1, 8);  // one file, not compressed
-    put(kManifest + 8, 0x01000000, 4);
-    put(kManifest + 16, kXml, 8);
-    put(kManifest + 24, xml_.size(), 8);
-}
+      xml_(xml_of(lab.lab())),
+      bootstrap_(serial_, {xml_.size(), u3v_leader({}, 0, 0).size(), u3v_trailer({}, 0, 0).size()}),
+      device_({}, lab.lab(), [&lab] { return lab.time_s(); }) {}
 
 std::vector<std::uint8_t> U3vFunction::descriptors() const {
-    constexpr std::uint8_t kMiscellaneous = 0xEF, kUsb3Vision = 0x05, kBulk = 2, kInterface = 0x24;
-    std::vector<std::uint8_t> bytes{
-        18, 1, 0x00, 0x03, kMiscellaneous, 2, 1, 9, 0xFE, 0xCA, 0x03, 0x01, 0, 1, 1, 2, 3, 1};
-    std::vector<std::uint8_t> rest{9,
-                                   2,
-                                   0,
-                                   0,
-                                   2,
-                                   1,
-                                   0,
-                                   0x80,
-                                   50,  // configuration
-                                   8,
-                                   11,
-                                   0,
-                                   2,
-                                   kMiscellaneous,
-                                   kUsb3Vision,
-                                   0,
-                                   0,  // two interfaces are one camera
-                                   9,
-                                   4,
-                                   0,
-                                   0,
-                                   2,
-                                   kMiscellaneous,
-                                   kUsb3Vision,
-                                   0,
-                                   0,  // control
-                                   20,
-                                   kInterface,
-                                   1,
-                                   0,
-                                   0,
-                                   1,
-                                   0,
-                                   0,
-                                   0,
-                                   1,
-                                   0,
-                                   4,
-                                   1,
-                                   2,
-                                   0,
-                                   3,
-                                   0,
-                                   0,
-                                   0,
-                                   0,
-                                   7,
-                                   5,
-                                   kControlIn,
-                                   kBulk,
-                                   0,
-                                   4,
-                                   0,
-                                   7,
-                                   5,
-                                   0x01,
-                                   kBulk,
-                                   0,
-                                   4,
-                                   0,
-                                   9,
-                                   4,
-                                   1,
-                                   0,
-                                   1,
-                                   kMiscellaneous,
-                                   kUsb3Vision,
-                                   2,
-                                   0,  // stream
-                                   7,
-                                   5,
-                                   kStreamIn,
-                                   kBulk,
-                                   0,
-                                   4,
-                                   0};
-    rest[2] = static_cast<std::uint8_t>(rest.size());
-    bytes.insert(bytes.end(), rest.begin(), rest.end());
-    return bytes;
+    return u3v_descriptors();
 }
 
 std::vector<std::string> U3vFunction::texts() const {
@@ -193,17 +76,17 @@ std::optional<std::vector<std::uint8_t>> U3vFunction::control(
 }
 
 std::uint16_t U3vFunction::read(std::uint64_t at, std::span<std::uint8_t> to) {
-    const auto copy_from = [&](const std::vector<std::uint8_t>& bytes, std::uint64_t start) {
+    const auto copy_from = [&](std::span<const std::uint8_t> bytes, std::uint64_t start) {
         const std::uint64_t begin = at - start;
         for (std::size_t k = 0; k < to.size(); ++k)
             to[k] = begin + k < bytes.size() ? bytes[begin + k] : std::uint8_t{0};
         return std::uint16_t{0};
     };
-    if (at >= kXml && at < kXml + xml_.size())
-        return copy_from(xml_, kXml);
-    if (at + to.size() <= kBootstrapEnd) {
-        put(kSirm + 8, device_.value(address::kPayloadSize), 8);
-        return copy_from(bootstrap_, 0);
+    if (at >= u3v_address::kXml && at < u3v_address::kXml + xml_.size())
+        return copy_from(xml_, u3v_address::kXml);
+    if (U3vBootstrap::holds(at, to.size())) {
+        bootstrap_.set_payload_size(device_.value(address::kPayloadSize));
+        return copy_from(bootstrap_.bytes(), 0);
     }
     if (at < kOwnStart || at >= address::kOwnEnd)
         return kInvalidAddress;
@@ -226,10 +109,8 @@ void U3vFunction::tell_lab(std::uint32_t at) {
 }
 
 std::uint16_t U3vFunction::write(std::uint64_t at, std::span<const std::uint8_t> from) {
-    if (at >= kSirm && at + from.size() <= kManifest) {
-        std::copy(from.begin(), from.end(), bootstrap_.begin() + static_cast<std::ptrdiff_t>(at));
+    if (bootstrap_.write(at, from))
         return 0;
-    }
     if (at < kOwnStart || at >= address::kOwnEnd)
         return kWriteProtect;
     const auto status =
@@ -250,7 +131,7 @@ bool U3vFunction::take(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> 
     std::vector<std::uint8_t> data;
     std::uint16_t status = kNotImplemented;
     if (code == kReadCommand && bytes.size() >= kHeaderBytes + 12) {
-        data.resize(std::min<std::uint64_t>(number_at(bytes, 22, 2), kMostCommandBytes));
+        data.resize(std::min<std::uint64_t>(number_at(bytes, 22, 2), kU3vMostCommandBytes));
         status = read(at, data);
     } else if (code == kWriteCommand) {
         const auto content = bytes.subspan(kHeaderBytes + 8);
@@ -269,45 +150,13 @@ bool U3vFunction::take(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> 
     return true;
 }
 
-std::vector<std::uint8_t> U3vFunction::leader(const gige::Settings& settings) const {
-    constexpr std::uint64_t kBytes = 52, kImage = 1;
-    std::vector<std::uint8_t> bytes;
-    append(bytes, kLeaderKey, 4);
-    append(bytes, 0, 2);
-    append(bytes, kBytes, 2);
-    append(bytes, block_id_, 8);
-    append(bytes, 0, 2);
-    append(bytes, kImage, 2);
-    append(bytes, static_cast<std::uint64_t>(lab_.time_s() * 1e9), 8);
-    append(bytes, static_cast<std::uint32_t>(settings.format), 4);
-    for (const int number :
-         {settings.size_px.x, settings.size_px.y, settings.offset_px.x, settings.offset_px.y})
-        append(bytes, static_cast<std::uint32_t>(number), 4);
-    append(bytes, 0, 4);  // padding
-    return bytes;
-}
-
-std::vector<std::uint8_t> U3vFunction::trailer(const gige::Settings& settings,
-                                               std::size_t payload_bytes) const {
-    constexpr std::uint64_t kBytes = 32;
-    std::vector<std::uint8_t> bytes;
-    append(bytes, kTrailerKey, 4);
-    append(bytes, 0, 2);
-    append(bytes, kBytes, 2);
-    append(bytes, block_id_, 8);
-    append(bytes, 0, 4);
-    append(bytes, payload_bytes, 8);
-    append(bytes, static_cast<std::uint32_t>(settings.size_px.y), 4);
-    return bytes;
-}
-
 // True while a frame is under way; begins one where it is triggered or due.
 bool U3vFunction::begin_frame() {
     if (ready_)
         return true;
     gige::Acquisition& acquisition = device_.acquisition;
-    const bool is_streaming = (bootstrap_[kSirm + 4] & 1U) != 0;
-    if (!acquisition.active || acquisition.frames_left == 0 || !is_streaming)
+    if (!acquisition.active || acquisition.frames_left == 0 || !bootstrap_.is_streaming() ||
+        faults.is_frameless)
         return false;
     const gige::Settings settings = device_.settings();
     const Clock::time_point now = Clock::now();
@@ -339,14 +188,16 @@ void U3vFunction::queue_frame() {
         --faults.short_frames;
         payload.resize(payload.size() / 2);
     }
-    stream_.push_back(leader(settings));
+    const std::uint64_t payload_bytes = payload.size();
+    stream_.push_back(
+        u3v_leader(settings, block_id_, static_cast<std::uint64_t>(lab_.time_s() * 1e9)));
     stream_.push_back(std::move(payload));
-    stream_.push_back(trailer(settings, stream_.back().size()));
+    stream_.push_back(u3v_trailer(settings, block_id_, payload_bytes));
     ready_.reset();
 }
 
 std::optional<UsbFunction::Reply> U3vFunction::give(std::uint8_t endpoint, std::size_t most_bytes) {
-    if (endpoint == kControlIn) {
+    if (endpoint == kU3vControlIn) {
         if (acknowledgments_.empty())
             return std::nullopt;
         Reply reply{false, std::move(acknowledgments_.front())};

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "sample_data/devices/lab_state.h"
+#include "sample_data/devices/u3v_bootstrap.h"
 #include "sample_data/devices/usb_device.h"
 #include "sample_data/gige/device.h"
 
@@ -18,8 +19,9 @@
 namespace nearfield::devices {
 
 struct U3vFaults {
-    std::atomic<int> short_frames{0};    // so many next frames lack their second half
-    std::atomic<bool> is_silent{false};  // commands are not answered
+    std::atomic<int> short_frames{0};       // so many next frames lack their second half
+    std::atomic<bool> is_silent{false};     // commands are not answered
+    std::atomic<bool> is_frameless{false};  // triggers bring nothing
 };
 
 class U3vFunction : public UsbFunction {
@@ -37,21 +39,17 @@ class U3vFunction : public UsbFunction {
   private:
     using Clock = std::chrono::steady_clock;
 
-    void fill_bootstrap();
-    void put(std::uint32_t at, std::uint64_t value, std::size_t bytes);
-    void put_text(std::uint32_t at, const std::string& text);
     /// 0 or a status code of GenCP.
     std::uint16_t read(std::uint64_t at, std::span<std::uint8_t> to);
     std::uint16_t write(std::uint64_t at, std::span<const std::uint8_t> from);
     void tell_lab(std::uint32_t at);
     bool begin_frame();
     void queue_frame();
-    std::vector<std::uint8_t> leader(const gige::Settings& settings) const;
-    std::vector<std::uint8_t> trailer(const gige::Settings& settings, std::size_t bytes) const;
 
     LabState& lab_;
     std::string serial_;
-    std::vector<std::uint8_t> bootstrap_, xml_;
+    std::vector<std::uint8_t> xml_;
+    U3vBootstrap bootstrap_;
     gige::Device device_;
     std::deque<std::vector<std::uint8_t>> acknowledgments_;
     std::deque<std::vector<std::uint8_t>> stream_;  // leader, payload, trailer

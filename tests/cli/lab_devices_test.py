@@ -2,8 +2,12 @@
 """Captures by every kind of camera and instrument from one virtual bench: the same pixels, and other programs see the devices too."""
 import os
 import pathlib
+import shutil
+import subprocess
+import unittest
 
-from capture_test import frames, plan, served, small_bench
+from capture_test import SOURCE, plan, served, small_bench
+from killed import SAME, frames
 from program import PROGRAM, ProgramTest, main, run
 
 # Loopback addresses of this process alone, beside those of capture_test.
@@ -18,6 +22,10 @@ INSTRUMENTS = {"stage": {"device": "/dev/ttyUSB0", "first_position_mm": [-150, -
                "luxmeter": {"device": "NFLUX01"},
                "supply": {"device": "NFPSU01", "voltage_v": 12, "current_limit_a": 6, "warm_limit_rel": 0.05,
                           "warm_window_s": 0.3}}
+
+
+def run_plain(*command):
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 class LabDevicesTest(ProgramTest):
@@ -36,7 +44,7 @@ class LabDevicesTest(ProgramTest):
         self.assertEqual(network.keys(), devices.keys())
         self.assertEqual(len(network), 4 + 4 + 2 + 5 * 2 + 6 * 3)
         for number, record in network.items():
-            for key in ("shot", "exposure_us", "gain_db", "pixel_format", "size_px", "bits", "xxh128"):
+            for key in SAME:
                 self.assertEqual(record[key], devices[number][key], (number, key))
         return devices
 
@@ -75,6 +83,32 @@ class LabDevicesTest(ProgramTest):
         self.among_devices("v4l2-ctl", "-d", "/dev/video0", "--set-ctrl=auto_exposure=1,exposure_time_absolute=50",
                            "--stream-mmap=3", "--stream-count=5", "--stream-to=raw.bin")
         self.assertEqual(pathlib.Path("raw.bin").stat().st_size, 5 * 96 * 80 * 2)
+
+    def test_killed_at_random_moments_it_goes_on(self):
+        kills = os.environ.get("NEARFIELD_KILLS", "2")
+        for camera in ("/dev/video0", "NFU3V01"):
+            name = plan(camera, "killed.json", instruments=INSTRUMENTS)
+            result = subprocess.run([PROGRAM, "lab", "devices", "bench.json", "--fast", "--", "/usr/bin/python3",
+                                     SOURCE / "tests/cli/killed.py", name, kills], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            if int(kills) >= 5:
+                self.assertGreater(int(result.stdout), 0)
+            shutil.rmtree("whole")
+
+    def test_the_udev_rules_open_usb_devices(self):
+        """By udev's own simulation, in a namespace whose /run it may write to."""
+        script = ("mount -t tmpfs tmpfs /run && mount -t tmpfs tmpfs /dev/char && mkdir -p /run/udev/rules.d && "
+                  "cp \"$1\" /run/udev/rules.d/ && udevadm test \"/sys/devices/pci0000:00/0000:00:14.0/usb1/1-$2\" 2>&1")
+        own_root = ["unshare", "--map-root-user", "--mount"]
+        if shutil.which("udevadm") is None or run_plain(*own_root, "mount", "-t", "tmpfs", "tmpfs", "/run").returncode != 0:
+            raise unittest.SkipTest("no udevadm, or no mount namespaces")
+        rules = SOURCE / "scripts/60-nearfield.rules"
+        for device in ("2", "3", "4"):  # camera, luxmeter, supply
+            said = self.among_devices(*own_root, "sh", "-c", script, "sh", rules, device).stdout
+            self.assertRegex(said, r"60-nearfield.rules:\d+ GROUP \d+\n")
+            self.assertRegex(said, r"60-nearfield.rules:\d+ MODE 0660\n")
+            self.assertRegex(said, r"\nTAGS=\S*:uaccess:")
+            self.assertNotRegex(said, "60-nearfield.rules.*([Ii]nvalid|[Uu]nknown|[Ii]gnor|[Ff]ail)")
 
     def test_the_commands_exit_code_is_passed_on(self):
         result = run("lab", "devices", "bench.json", "--", "nearfield", "preview", "/dev/video7")

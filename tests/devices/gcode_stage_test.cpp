@@ -92,10 +92,16 @@ TEST_F(Stage, SilentItIsLost) {
     EXPECT_THAT(complaint<DeviceLost>([&] { stage.status(); }), HasSubstr("does not answer"));
 }
 
-TEST_F(Stage, UnpluggedItIsLost) {
-    GcodeStage stage("/dev/ttyUSB0", never);
-    lab_.stage.unplug();
-    EXPECT_THAT(complaint<DeviceLost>([&] { stage.status(); }), HasSubstr("/dev/ttyUSB0"));
+TEST_F(Stage, UnpluggedItIsLostAndPluggedInItHomesAgain) {
+    {
+        GcodeStage stage("/dev/ttyUSB0", never);
+        lab_.stage.unplug();
+        EXPECT_THAT(complaint<DeviceLost>([&] { stage.status(); }), HasSubstr("/dev/ttyUSB0"));
+    }
+    lab_.stage.plug_in();
+    GcodeStage again("/dev/ttyUSB0", never);
+    EXPECT_EQ(again.status().position_mm, glm::dvec2(-1));
+    move(again, {-50, -50});
 }
 
 TEST_F(Stage, TwoProgramsDoNotShareALine) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "acquire/lamp_supply.h"
+#include "formats/files/provenance.h"
 #include "tests/devices/test_lab.h"
 
 #include <gmock/gmock.h>
@@ -81,6 +82,28 @@ TEST(Supply, WaitsUntilTheLampIsWarm) {
         true, [&] { return supply.current_a(); }, never);
     // A change of 0.2 % in a third of the time constant leaves 0.2 % / (e^(1/3) - 1).
     EXPECT_LT(supply.current_a(), 4.5 * (1 + 0.002 / (std::exp(1. / 3) - 1) + 1e-4));
+}
+
+// Nobody knows how long the lamp was dark while its supply was away. A lamp that stayed warm costs
+// one window, a cold one the time that it needs.
+TEST(Supply, WarmsTheLampUpAgainAfterItWasAway) {
+    constexpr double kWarmUp_s = 0.3;
+    VirtualLab lab(test_bench(), with_warm_up(0.2, kWarmUp_s), true);
+    const capture::SupplyPlan plan = supply_plan();
+    for (const bool is_unplugged : {false, true}) {
+        LampSupply supply(plan);
+        const double start_s = now_s();
+        supply.set_lamp(
+            true, [&] { return supply.current_a(); }, never);
+        EXPECT_GE(now_s() - start_s, plan.warm_window_s);
+        EXPECT_LT(supply.current_a(), 4.5 * (1 + 0.002 / (std::exp(1. / 3) - 1) + 1e-4));
+        if (!is_unplugged) {
+            lab.supply_plug.unplug();
+            EXPECT_THROW(supply.current_a(), acquire::DeviceLost);
+            lab.state.set_lamp(false, 0);  // the mains plug too
+            lab.supply_plug.plug_in();
+        }
+    }
 }
 
 TEST(Supply, SaysThatALampDoesNotGetSteady) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "acquire/aravis_camera.h"
-#include "formats/files/provenance.h"
+#include "tests/devices/large_frames.h"
 #include "tests/devices/test_lab.h"
 
 #include <gmock/gmock.h>
@@ -76,6 +76,21 @@ TEST_F(Usb3Vision, AShortFrameIsIncompleteAndTheNextIsWhole) {
     EXPECT_EQ(bench.camera->expose(never).frame.size_px, kSensorPx);
 }
 
+TEST_F(Usb3Vision, CtrlCDoesNotWaitForAFrameThatDoesNotCome) {
+    const Bench bench = open();
+    lab_.u3v.faults.is_frameless = true;
+    int looks = 0;
+    EXPECT_THROW(bench.camera->expose([&looks] { return ++looks > 2; }), acquire::Stopped);
+}
+
+// Aravis asks a few times, each with its time-out.
+TEST_F(Usb3Vision, SilentItIsLost) {
+    const Bench bench = open();
+    lab_.u3v.faults.is_silent = true;
+    EXPECT_THAT(complaint<Error>([&] { bench.camera->expose(never); }), HasSubstr("NFU3V01"));
+    lab_.u3v.faults.is_silent = false;
+}
+
 TEST_F(Usb3Vision, UnpluggedItIsLostAndPluggedInItWorksAgain) {
     {
         const Bench bench = open();
@@ -84,6 +99,13 @@ TEST_F(Usb3Vision, UnpluggedItIsLostAndPluggedInItWorksAgain) {
     }
     lab_.u3v_plug.plug_in();
     EXPECT_EQ(open().camera->expose(never).frame.size_px, kSensorPx);
+}
+
+// Frames that cost nothing but their bytes, as fast as they come; the machine may be busy.
+TEST(Usb3VisionThroughput, IsSaid) {
+    const VirtualLab lab(large_bench(), test_mounting(), true);
+    RecordProperty("frames_per_s",
+                   std::to_string(large_frames_per_s(acquire::open_aravis("NFU3V01"))));
 }
 
 }  // namespace
