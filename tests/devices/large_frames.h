@@ -6,6 +6,7 @@
 #include "acquire/camera.h"
 #include "acquire/session.h"
 #include "formats/files/provenance.h"
+#include "sample_data/gige/pixel_format.h"
 #include "tests/devices/test_lab.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +22,21 @@ inline gige::Lab large_bench() {
         return frame;
     };
     return lab;
+}
+
+/// What the simulated camera alone computes for a frame of Mono16, whatever the wire.
+inline double far_end_s() {
+    const gige::Lab lab = large_bench();
+    constexpr int kFrames = 5;
+    std::size_t bytes = 0;
+    const double start_s = now_s();
+    for (int k = 0; k < kFrames; ++k)
+        bytes +=
+            gige::pack(gige::PixelFormat::Mono16, gige::crop(lab.expose({}), lab.sensor_px, {0, 0},
+                                                             lab.sensor_px, lab.sensor_bits, 16))
+                .size();
+    EXPECT_EQ(bytes, kFrames * 2048U * 2048U * 2U);
+    return (now_s() - start_s) / kFrames;
 }
 
 /// Mono16, an exposure of 100 us that takes no time.

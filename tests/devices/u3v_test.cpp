@@ -104,6 +104,7 @@ TEST_F(Usb3Vision, UnpluggedItIsLostAndPluggedInItWorksAgain) {
 // Frames that cost nothing but their bytes, as fast as they come; the machine may be busy.
 TEST(Usb3VisionThroughput, IsSaid) {
     const VirtualLab lab(large_bench(), test_mounting(), true);
+    RecordProperty("far_end_ms", std::to_string(1000 * far_end_s()));
     RecordProperty("frames_per_s",
                    std::to_string(large_frames_per_s(acquire::open_aravis("NFU3V01"))));
 }

@@ -156,6 +156,7 @@ TEST(V4l2Names, AreThoseOfV4l2Ctl) {
 // Frames that cost nothing but their bytes, as fast as they come; the machine may be busy.
 TEST(V4l2Throughput, IsSaid) {
     const VirtualLab lab(large_bench(), test_mounting(), true);
+    RecordProperty("far_end_ms", std::to_string(1000 * far_end_s()));
     RecordProperty("frames_per_s",
                    std::to_string(large_frames_per_s(acquire::open_v4l2("/dev/video0"))));
 }
