@@ -17,7 +17,7 @@ void run(ConvertCommand& command) {
     const double start_s = now_s();
     check_options([&] { rays::check(command.options); });
     check_outputs({command.output.path}, {command.input});
-    rays::RaySet set = rays::read_tm25(command.input, command.read);
+    rays::RaySet set = rays::read_rays(command.input, command.read);
     if (command.flux)
         rays::scale_to(set, *command.flux);
     for (const std::string& note : set.notes)
@@ -45,7 +45,7 @@ void run(ConvertCommand& command) {
 void add_convert(CLI::App& app) {
     auto c = std::make_shared<ConvertCommand>();
     CLI::App* sub = add_command(
-        app, "convert", "Makes a light field from a TM-25 ray file",
+        app, "convert", "Makes a light field from a ray file",
         {"nearfield convert led.tm25ray -o led.lightfield.exr",
          "nearfield convert led.tm25ray -o led.lightfield.exr --slabs 5 --grid 13x11 --no-color"});
     add_convert_options(*sub, *c);

@@ -8,7 +8,7 @@ namespace nearfield::app {
 
 void add_convert_options(CLI::App& sub, ConvertCommand& c) {
     constexpr double kFar_mm = 1e6;
-    sub.add_option("rays", c.input, "ray file, .tm25ray (docs/ray_files.md)")
+    sub.add_option("rays", c.input, "ray file: TM-25, Zemax, LightTools, Speos (docs/ray_files.md)")
         ->required()
         ->type_name("FILE");
     add_output(sub, c.output, "light field to write, NAME.lightfield.exr");

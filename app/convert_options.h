@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/output.h"
-#include "formats/rays/tm25.h"
+#include "formats/rays/ray_file.h"
 #include "formats/rays/to_lightfield.h"
 
 #include <optional>

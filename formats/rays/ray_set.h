@@ -21,6 +21,7 @@ struct Ray {
 
 /// A lamp as a list of rays.
 struct RaySet {
+    std::string format;  // of the file: "IES TM-25", "Zemax" ...
     Quantity quantity = Quantity::Photometric;
     std::vector<Ray> rays;
     /// Linear Rec.709 of each ray per unit of flux: Y = 1, every channel >= 0. Empty: unknown; one:

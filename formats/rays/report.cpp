@@ -42,11 +42,12 @@ void scale_to(RaySet& set, double total) {
 std::string summary(const RaySet& set, const ConvertReport& report) {
     const char* u = unit(set);
     std::string text = fmt::format(
-        "{} rays, {:.6g} {}; kept {:.6g} +- {:.2g} {}; dropped {:.4g} {} ({:.3f} %, {:.0f} rays): "
+        "{}: {} rays, {:.6g} {}; kept {:.6g} +- {:.2g} {}; dropped {:.4g} {} ({:.3f} %, {:.0f} "
+        "rays): "
         "{:.4g} by direction, {:.4g} beside S, {:.4g} beside U\n",
-        report.rays_in, report.flux_in, u, report.flux_out, report.sigma_flux, u, report.dropped(),
-        u, 100.0 * report.dropped() / report.flux_in, report.rays_dropped, report.dropped_direction,
-        report.dropped_s, report.dropped_u);
+        set.format, report.rays_in, report.flux_in, u, report.flux_out, report.sigma_flux, u,
+        report.dropped(), u, 100.0 * report.dropped() / report.flux_in, report.rays_dropped,
+        report.dropped_direction, report.dropped_s, report.dropped_u);
     for (const SlabReport& slab : report.slabs)
         text += fmt::format(
             "slab {}: {} rays, {:.5g} {}; U at {:.3f} mm, S at {:.3f} mm; grid {} (a pitch is "

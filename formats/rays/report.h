@@ -2,7 +2,7 @@
 /// What a conversion says of itself: a text for the terminal, a Provenance for the file.
 #pragma once
 
-#include "formats/rays/tm25.h"
+#include "formats/rays/ray_file.h"
 #include "formats/rays/to_lightfield.h"
 
 #include <optional>

@@ -1,34 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Reads ray files. Source: IES TM-25-13, "Ray file format for the description of the emission
-/// property of light sources", section 4.7. Lengths in the file are mm; everything is
+/// The header of IES TM-25 ray files. Source: IES TM-25-13, "Ray file format for the description of
+/// the emission property of light sources", section 4.7. Lengths in the file are mm; everything is
 /// little-endian.
 #pragma once
 
-#include "formats/rays/ray_set.h"
-
-#include <functional>
-#include <string>
+#include "formats/rays/byte_reader.h"
+#include "formats/rays/ray_layout.h"
 
 namespace nearfield::rays {
 
-struct ReadOptions {
-    /// Keep the sum of the rays' flux even where the header states another total.
-    bool keep_ray_flux = false;
-    /// Keep radiant flux as it is. By default it becomes luminous flux where the file gives
-    /// wavelengths or spectra.
-    bool keep_radiometric = false;
-    std::function<void(double fraction)> progress;
-};
+constexpr std::int32_t kTm25Version = 2013;
+constexpr std::uint64_t kTm25FlagsByte = 256;     // section 4.7.2
+constexpr std::uint64_t kTm25TablesByte = 36288;  // after nine text fields of 4000 bytes, 4.7.3
 
-/// Reads a TM-25 ray file.
-///
-/// Out     rays whose flux is scaled to the header's total where it states one; notes say so.
-/// Throws  Error naming byte offset and ray where the file is truncated, has another version, holds
-/// a number that is
-///         not finite, a direction of no length, negative flux, or counts that its size does not
-///         justify; and, by name, for the formats of LightTools, Zemax and Speos, which are not
-///         read.
-/// Cost    one pass; 28 bytes of memory a ray (40 with color of its own).
-RaySet read_tm25(const std::string& path, const ReadOptions& options = {});
+/// Whether the file starts as a TM-25 file does. Leaves the reader where it was.
+bool is_tm25(ByteReader& file);
+
+/// Reads the header. Throws Error naming byte offset (and ray) where the file is truncated, has
+/// another version, contradicts itself, or promises rays that its size does not justify.
+RayLayout read_tm25_header(ByteReader& file);
 
 }  // namespace nearfield::rays

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/luminaire.h"
-#include "formats/rays/tm25.h"
+#include "formats/rays/ray_file.h"
 #include "formats/rays/to_lightfield.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(MeasuredLed, AgreesWithItsRaysNearAndFar) {
     if (!std::filesystem::exists(folder))
         GTEST_SKIP() << "optional folder " << folder << " is not there";
     const std::string path = std::filesystem::directory_iterator(folder)->path().string();
-    const rays::RaySet set = rays::read_tm25(path);
+    const rays::RaySet set = rays::read_rays(path);
     EXPECT_NEAR(rays::flux(set), 337.0, 1e-3);
     rays::ConvertOptions options;
     options.color = false;
