@@ -11,6 +11,7 @@ namespace nearfield::app {
 void add_demo(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_convert(CLI::App& app);
+void add_export(CLI::App& app);
 void add_pack(CLI::App& app);
 void add_info(CLI::App& app);
 void add_probe(CLI::App& app);

@@ -57,6 +57,7 @@ void add_commands(CLI::App& app) {
     nearfield::app::add_demo(app);
     nearfield::app::add_simulate(app);
     nearfield::app::add_convert(app);
+    nearfield::app::add_export(app);
     nearfield::app::add_pack(app);
     nearfield::app::add_info(app);
     nearfield::app::add_probe(app);

@@ -13,6 +13,10 @@ double lobe(double x, double center, double width_below, double width_above) {
     return std::exp(-0.5 * t * t);
 }
 
+// XYZ to linear Rec.709 with D65 (ITU-R BT.709-6), Y in the same unit. By columns.
+const glm::dmat3 kRec709FromXyz{3.2409699,  -0.9692436, 0.0556301, -1.5373832, 1.8759675,
+                                -0.2039770, -0.4986108, 0.0415551, 1.0569715};
+
 }  // namespace
 
 glm::dvec3 color_matching(double wavelength_nm) {
@@ -27,10 +31,7 @@ UnitColor unit_color(glm::dvec3 xyz) {
     if (!(xyz.y > 0.0))
         return {};
     const glm::dvec3 c = xyz / xyz.y;
-    // XYZ to linear Rec.709 with D65 (ITU-R BT.709-6), Y in the same unit.
-    glm::dvec3 rgb{3.2409699 * c.x - 1.5373832 * c.y - 0.4986108 * c.z,
-                   -0.9692436 * c.x + 1.8759675 * c.y + 0.0415551 * c.z,
-                   0.0556301 * c.x - 0.2039770 * c.y + 1.0569715 * c.z};
+    glm::dvec3 rgb = kRec709FromXyz * c;
     const double least = std::min({rgb.x, rgb.y, rgb.z});
     const bool desaturated = least < 0.0;
     if (desaturated)
@@ -38,6 +39,10 @@ UnitColor unit_color(glm::dvec3 xyz) {
     // The matrix' rounding and the clamp leave Y off by some 1e-7: take it out.
     const double y = 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z;
     return {rgb / y, desaturated};
+}
+
+glm::dvec3 xyz_of(glm::dvec3 rgb) {
+    return glm::inverse(kRec709FromXyz) * rgb;
 }
 
 }  // namespace nearfield::rays

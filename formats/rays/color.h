@@ -25,4 +25,7 @@ struct UnitColor {
 /// xyz need not be normalized; xyz.y <= 0 gives white.
 UnitColor unit_color(glm::dvec3 xyz);
 
+/// CIE XYZ of a color in linear Rec.709. This is the inverse of unit_color, for colors with Y = 1.
+glm::dvec3 xyz_of(glm::dvec3 rgb);
+
 }  // namespace nearfield::rays

@@ -189,6 +189,15 @@ TEST(Color, HasUnitLuminanceAndNoNegativeChannel) {
     }
 }
 
+TEST(Color, GoesToXyzAndBack) {
+    for (const glm::dvec3 rgb : {glm::dvec3(1), {2, 0.7, 0.1}, {0.1, 1.1, 3}}) {
+        const glm::dvec3 unit = rgb / (0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b);
+        const rays::UnitColor back = rays::unit_color(rays::xyz_of(unit));
+        EXPECT_LT(glm::length(back.rgb - unit), 1e-6);  // the matrix' digits
+        EXPECT_FALSE(back.desaturated);
+    }
+}
+
 // Proves the fit of the color matching functions against CIE 1931 values (CIE 015, 2 degrees).
 TEST(Color, MatchesTheStandardObserver) {
     // Stated largest error of the fit, Wyman et al. 2013, with the peaks at 1.06, 1.0 and 1.78.
