@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace nearfield::model {
 namespace {
@@ -64,17 +65,26 @@ double cell_integral(const std::array<double, 3>& a, double x0, double x) {
     return h * (a[0] + c * (a[1] + c * a[2]) + a[2] * h * h / 12.0);
 }
 
-// Where the integral from x0 on is `target`: bisection, since a profile may touch zero at a cell's
-// end, where Newton stalls.
-double invert_cell(const std::array<double, 3>& a, double x0, double target) {
-    double low = x0, high = x0 + 1.0;
-    constexpr int kSteps = 40;  // 1e-12 of a pitch
-    for (int k = 0; k < kSteps; ++k) {
-        const double middle = 0.5 * (low + high);
-        (cell_integral(a, x0, middle) < target ? low : high) = middle;
+// Where the integral from x0 on is `target`: Newton's steps, and bisection where one would leave
+// the bracket, as where a profile touches zero at a cell's end.
+double invert_cell(const std::array<double, 3>& a, double x0, double target, double guess) {
+    constexpr int kMostSteps = 60;
+    constexpr double kClose = 1e-12;  // of a pitch; files hold floats
+    double low = x0, high = x0 + 1.0, x = std::clamp(guess, low, high);
+    for (int k = 0; k < kMostSteps && high - low > kClose; ++k) {
+        const double excess = cell_integral(a, x0, x) - target;
+        (excess < 0.0 ? low : high) = x;
+        const double newton = x - excess / (a[0] + x * (a[1] + x * a[2]));
+        const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+        if (std::abs(next - x) <= kClose)
+            return next;
+        x = next;
     }
-    return 0.5 * (low + high);
+    return x;
 }
+
+// Texels whose sum stands in the table: few enough to walk, many enough to keep it small.
+constexpr std::size_t kTexelsPerSum = 16;
 
 }  // namespace
 
@@ -87,29 +97,28 @@ Emission::Emission(const LightField& lightfield) : lightfield_(lightfield) {
         double share = 0.0;
         for (std::size_t c = 0; c < slab.profile.cells.size(); ++c)
             cdf.cells.push_back(share += integral(slab.profile, c) / whole);
+        cdf.whole = whole;
         profiles_.push_back(cdf);
+        tabulate_guesses(s);
         const double basis_m2 = whole * whole * slab.pitch_m.x * slab.pitch_m.y;
         const double texel_m2 = slab.texel_m().x * slab.texel_m().y;
         const double weight = slab.weighting == Weighting::Irradiance
                                   ? basis_m2 * texel_m2
                                   : basis_m2 * texel_m2 / (slab.delta_m * slab.delta_m);
         for (int m = 0; m < slab.image_count(); ++m) {
-            const std::size_t begin = row_ends_.size();
+            const std::size_t begin = block_ends_.size();
             double image = 0.0;
-            for (int j = 0; j < slab.texels.y; ++j) {
-                for (int i = 0; i < slab.texels.x; ++i)
-                    image += texel_luminance(
-                        slab, m,
-                        static_cast<std::size_t>(j) * static_cast<std::size_t>(slab.texels.x) +
-                            static_cast<std::size_t>(i));
-                row_ends_.push_back(image);
+            for (std::size_t texel = 0; texel < slab.texel_count(); ++texel) {
+                image += texel_luminance(slab, m, texel);
+                if ((texel + 1) % kTexelsPerSum == 0 || texel + 1 == slab.texel_count())
+                    block_ends_.push_back(image);
             }
             if (!(image > 0.0)) {
-                row_ends_.resize(begin);
+                block_ends_.resize(begin);
                 continue;
             }
             images_.push_back({s, m});
-            row_begin_.push_back(begin);
+            block_begin_.push_back(begin);
             image_ends_.push_back(sum += weight * image);
         }
     }
@@ -120,32 +129,47 @@ Emission::Emission(const LightField& lightfield) : lightfield_(lightfield) {
 glm::dvec2 Emission::draw_s(
     const Image& image, std::size_t index, double xi, glm::dvec2 within, glm::dvec3& color) const {
     const Slab& slab = lightfield_.slabs[image.slab];
-    const double* rows = &row_ends_[row_begin_[index]];
-    const double t = xi * rows[slab.texels.y - 1];
-    const std::size_t j = find(rows, rows + slab.texels.y, t);
-    const auto width = static_cast<std::size_t>(slab.texels.x);
-    double running = j == 0 ? 0.0 : rows[j - 1];
-    std::size_t i = 0;
-    for (std::size_t k = 0; k < width; ++k) {
-        const double y = texel_luminance(slab, image.m, j * width + k);
+    const std::size_t texels = slab.texel_count();
+    const double* blocks = &block_ends_[block_begin_[index]];
+    const std::size_t block_count = (texels + kTexelsPerSum - 1) / kTexelsPerSum;
+    const double t = xi * blocks[block_count - 1];
+    const std::size_t block = find(blocks, blocks + block_count, t);
+    double running = block == 0 ? 0.0 : blocks[block - 1];
+    std::size_t texel = 0;
+    for (std::size_t k = block * kTexelsPerSum;
+         k < std::min(texels, (block + 1) * kTexelsPerSum) && running <= t; ++k) {
+        const double y = texel_luminance(slab, image.m, k);
         if (y > 0.0)
-            i = k;  // the last lit one, where rounding leaves t beyond the row's sum
+            texel = k;  // the last lit one, where rounding leaves t beyond the block's sum
         running += y;
-        if (running > t)
-            break;
     }
-    color = texel_color(slab, image.m, j * width + i);
-    return slab.s_min_m + (glm::dvec2(i, j) + within) * slab.texel_m();
+    color = texel_color(slab, image.m, texel);
+    const auto width = static_cast<std::size_t>(slab.texels.x);
+    return slab.s_min_m + (glm::dvec2(texel % width, texel / width) + within) * slab.texel_m();
 }
 
 double Emission::draw_profile(std::size_t slab, double xi) const {
     const Profile& profile = lightfield_.slabs[slab].profile;
-    const std::vector<double>& ends = profiles_[slab].cells;
-    const std::size_t c = find(ends.data(), ends.data() + ends.size(), xi);
-    const double before = c == 0 ? 0.0 : ends[c - 1];
-    const double x0 = static_cast<double>(c) - 0.5 * static_cast<double>(ends.size());
-    const double whole = integral(profile);
-    return invert_cell(profile.cells[c], x0, (xi - before) * whole);
+    const ProfileCdf& cdf = profiles_[slab];
+    const std::size_t c = find(cdf.cells.data(), cdf.cells.data() + cdf.cells.size(), xi);
+    const double before = c == 0 ? 0.0 : cdf.cells[c - 1];
+    const double x0 = static_cast<double>(c) - 0.5 * static_cast<double>(cdf.cells.size());
+    double guess = x0 + 0.5;
+    if (!cdf.guesses.empty()) {
+        const double at = xi * static_cast<double>(cdf.guesses.size() - 1);
+        const auto k = std::min(static_cast<std::size_t>(at), cdf.guesses.size() - 2);
+        guess = std::lerp(cdf.guesses[k], cdf.guesses[k + 1], at - static_cast<double>(k));
+    }
+    return invert_cell(profile.cells[c], x0, (xi - before) * cdf.whole, guess);
+}
+
+// Where Newton's steps start, so that one or two are enough.
+void Emission::tabulate_guesses(std::size_t slab) {
+    constexpr int kGuesses = 256;
+    std::vector<double> guesses;
+    for (int k = 0; k <= kGuesses; ++k)
+        guesses.push_back(draw_profile(slab, static_cast<double>(k) / kGuesses));
+    profiles_[slab].guesses = std::move(guesses);
 }
 
 EmittedRay Emission::ray(std::uint64_t index, std::uint32_t seed) const {

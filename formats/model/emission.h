@@ -26,7 +26,7 @@ struct EmittedRay {
 class Emission {
   public:
     /// `lightfield` must outlive it. Throws Error where it holds no light. Memory: 8 bytes for
-    /// every row of every image.
+    /// every 16 texels.
     explicit Emission(const LightField& lightfield);
 
     /// Ray number `index` of the stream `seed`: always the same, independent of all others. Every
@@ -40,7 +40,9 @@ class Emission {
     };
     // A profile's cells as cumulative shares.
     struct ProfileCdf {
-        std::vector<double> cells;  // upper ends, the last is 1
+        double whole = 0;             // integral of the profile
+        std::vector<double> cells;    // upper ends, the last is 1
+        std::vector<double> guesses;  // of x, at shares k / 256
     };
 
     glm::dvec2 draw_s(const Image& image,
@@ -49,13 +51,14 @@ class Emission {
                       glm::dvec2 within,
                       glm::dvec3& color) const;
     double draw_profile(std::size_t slab, double xi) const;
+    void tabulate_guesses(std::size_t slab);
 
     const LightField& lightfield_;
-    std::vector<Image> images_;           // those with light
-    std::vector<double> image_ends_;      // running sums of their flux (before cos^4)
-    std::vector<std::size_t> row_begin_;  // of each image in row_ends_
-    std::vector<double> row_ends_;        // running sums over an image's rows
-    std::vector<ProfileCdf> profiles_;    // of each slab
+    std::vector<Image> images_;             // those with light
+    std::vector<double> image_ends_;        // running sums of their flux (before cos^4)
+    std::vector<std::size_t> block_begin_;  // of each image in block_ends_
+    std::vector<double> block_ends_;        // running sums over an image's texels, every 16th
+    std::vector<ProfileCdf> profiles_;      // of each slab
 };
 
 }  // namespace nearfield::model

@@ -14,6 +14,13 @@ const char* unit(const RaySet& set) {
     return set.quantity == Quantity::Photometric ? "lm" : "W";
 }
 
+// "(0 ... 12.3 deg from +z)", or nothing where nothing was dropped.
+std::string angles(const AngleRange& range) {
+    return range.least_deg > range.most_deg
+               ? ""
+               : fmt::format(" ({:.1f} ... {:.1f} deg from +z)", range.least_deg, range.most_deg);
+}
+
 std::string size(glm::ivec2 s) {
     return fmt::format("{}x{}", s.x, s.y);
 }
@@ -44,10 +51,11 @@ std::string summary(const RaySet& set, const ConvertReport& report) {
     std::string text = fmt::format(
         "{}: {} rays, {:.6g} {}; kept {:.6g} +- {:.2g} {}; dropped {:.4g} {} ({:.3f} %, {:.0f} "
         "rays): "
-        "{:.4g} by direction, {:.4g} beside S, {:.4g} beside U\n",
+        "{:.4g} by direction{}, {:.4g} beside S{}, {:.4g} beside U{}\n",
         set.format, report.rays_in, report.flux_in, u, report.flux_out, report.sigma_flux, u,
         report.dropped(), u, 100.0 * report.dropped() / report.flux_in, report.rays_dropped,
-        report.dropped_direction, report.dropped_s, report.dropped_u);
+        report.dropped_direction, angles(report.direction_angles), report.dropped_s,
+        angles(report.s_angles), report.dropped_u, angles(report.u_angles));
     for (const SlabReport& slab : report.slabs)
         text += fmt::format(
             "slab {}: {} rays, {:.5g} {}; U at {:.3f} mm, S at {:.3f} mm; grid {} (a pitch is "

@@ -50,6 +50,7 @@ void check_count(glm::ivec2 grid, glm::ivec2 texels, const std::string& where) {
 struct Members {
     std::array<std::vector<Member>, 6> of_slab;
     double dropped_flux = 0, dropped_rays = 0;
+    AngleRange dropped_angles;
 };
 
 // Slanting more than this, a ray reaches planes a metre apart a kilometre aside.
@@ -70,6 +71,7 @@ Members share_out_directions(const RaySet& set, int slab_count) {
         if (!taken) {
             members.dropped_flux += set.rays[r].flux;
             members.dropped_rays += 1.0;
+            members.dropped_angles.add(direction);
         }
     }
     return members;
@@ -113,24 +115,21 @@ Planes choose_planes(const RaySet& set,
     return planes;
 }
 
-// Removes the crossings outside the rectangle; adds their parts of rays to `rays` and returns their
-// flux.
-template <typename Coordinate>
-double drop_outside(std::vector<Crossing>& crossings,
-                    const Rectangle& rectangle,
-                    const Coordinate& coordinate,
-                    double& rays) {
-    double dropped = 0.0;
+// Removes the crossings outside the rectangle; calls tell(crossing) for each.
+template <typename Coordinate, typename Tell>
+void drop_outside(std::vector<Crossing>& crossings,
+                  const Rectangle& rectangle,
+                  const Coordinate& coordinate,
+                  const Tell& tell) {
     const auto outside = [&](const Crossing& c) {
         const glm::dvec2 x(coordinate(c));
         const bool inside = x.x >= rectangle.min_m.x && x.x < rectangle.max_m.x &&
                             x.y >= rectangle.min_m.y && x.y < rectangle.max_m.y;
-        dropped += inside ? 0.0 : static_cast<double>(c.flux);
-        rays += inside ? 0.0 : static_cast<double>(c.share);
+        if (!inside)
+            tell(c);
         return !inside;
     };
     crossings.erase(std::remove_if(crossings.begin(), crossings.end(), outside), crossings.end());
-    return dropped;
 }
 
 // Rays whose fold comes first, as many as cross-validation needs.
@@ -273,12 +272,21 @@ Crossings cross(const RaySet& set,
                 double trim,
                 ConvertReport& total) {
     std::vector<Crossing> crossings = propagate(set, members, planes);
+    const auto count_in = [&](double& flux, AngleRange& angles) {
+        return [&](const Crossing& c) {
+            flux += static_cast<double>(c.flux);
+            total.rays_dropped += static_cast<double>(c.share);
+            angles.add(set.rays[c.ray].direction);
+        };
+    };
     const Rectangle s = bound_s(crossings, trim);
-    total.dropped_s += drop_outside(
-        crossings, s, [](const Crossing& c) { return c.s_m; }, total.rays_dropped);
+    drop_outside(
+        crossings, s, [](const Crossing& c) { return c.s_m; },
+        count_in(total.dropped_s, total.s_angles));
     const Rectangle u = bound_u(crossings, trim);
-    total.dropped_u += drop_outside(
-        crossings, u, [](const Crossing& c) { return c.u_m; }, total.rays_dropped);
+    drop_outside(
+        crossings, u, [](const Crossing& c) { return c.u_m; },
+        count_in(total.dropped_u, total.u_angles));
     return {std::move(crossings), s, u};
 }
 
@@ -356,6 +364,7 @@ Conversion to_lightfield(const RaySet& set, const ConvertOptions& options) {
     const Members members = share_out_directions(set, slab_count);
     report.dropped_direction = members.dropped_flux;
     report.rays_dropped = members.dropped_rays;
+    report.direction_angles = members.dropped_angles;
     if (members.of_slab[0].empty())
         throw Error{"no ray goes towards +z", "first slab",
                     "a lamp that shines along its file's +z"};
@@ -386,6 +395,13 @@ Conversion to_lightfield(const RaySet& set, const ConvertOptions& options) {
     report.sigma_flux = std::sqrt(squares * report.flux_out / report.flux_in);
     result.lightfield.quantity = set.quantity;
     return result;
+}
+
+void AngleRange::add(glm::vec3 direction) {
+    const double deg =
+        std::acos(std::clamp(static_cast<double>(direction.z), -1.0, 1.0)) * 180 / std::numbers::pi;
+    least_deg = std::min(least_deg, deg);
+    most_deg = std::max(most_deg, deg);
 }
 
 }  // namespace nearfield::rays

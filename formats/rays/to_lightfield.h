@@ -49,9 +49,17 @@ struct SlabReport {
     double sigma_texel_rel = 0;  // flux-weighted mean of relative sigma of a texel's flux
 };
 
+/// Smallest and largest angle from the ray file's +z of the rays that something happened to.
+struct AngleRange {
+    double least_deg = 180, most_deg = 0;  // none: least > most
+
+    void add(glm::vec3 direction);
+};
+
 struct ConvertReport {
     double flux_in = 0, flux_out = 0;  // lm or W
     double dropped_direction = 0, dropped_u = 0, dropped_s = 0;
+    AngleRange direction_angles, s_angles, u_angles;  // of what was dropped
     std::size_t rays_in = 0;
     double rays_dropped = 0;  // a ray whose part in one slab is dropped counts by that part
     double sigma_flux = 0;    // of flux_out, from the number of rays

@@ -16,7 +16,7 @@ constexpr std::uint64_t kFluxByte = 108, kUnitsByte = 136, kPlacementByte = 140,
                         kRayFormatByte = 192;
 constexpr std::int32_t kFluxOnly = 0, kSpectral = 2;
 constexpr double kNmPerUm = 1000;
-constexpr std::uint64_t kLongestLine = 1024;
+constexpr std::uint64_t kLongestHeaderLine = 1024;
 
 double meters_per_unit(std::int64_t unit, const std::string& where) {
     if (unit < 0 || unit >= static_cast<std::int64_t>(kZemaxMetersPerUnit.size()))
@@ -40,7 +40,7 @@ void note_placement(ByteReader& file, RayLayout& layout) {
 
 // The numbers of the first line, or none where they are not numbers.
 std::vector<double> first_line(ByteReader& file) {
-    const std::string head = file.head(kLongestLine);
+    const std::string head = file.head(kLongestHeaderLine);
     return numbers_of(std::string_view(head).substr(0, head.find('\n')))
         .value_or(std::vector<double>{});
 }
@@ -110,7 +110,7 @@ RayLayout read_zemax_text_header(ByteReader& file) {
     layout.ray_count = static_cast<std::uint64_t>(first[0]);
     layout.m_per_unit =
         meters_per_unit(static_cast<std::int64_t>(std::min(first[1], 1e6)), file.at(0));
-    const std::string head = file.head(2 * kLongestLine);
+    const std::string head = file.head(2 * kLongestHeaderLine);
     const std::size_t row = head.find('\n') + 1;
     const auto numbers = numbers_of(std::string_view(head).substr(row, head.find('\n', row) - row));
     if (head.find('\n') == std::string::npos || !numbers ||

@@ -52,7 +52,7 @@ void write_bare() {
 }
 
 void run(std::uint64_t rays) {
-    const LightField lamp = sample_data::reference_lamp();
+    const LightField lamp = sample_data::make_reference_lamp();
     rays::ExportOptions options;
     options.rays = rays;
     std::filesystem::remove(kFile);

@@ -4,6 +4,7 @@
 #include "formats/files/error.h"
 #include "formats/model/luminaire.h"
 #include "formats/rays/planes.h"
+#include "formats/rays/report.h"
 #include "tests/rays/disk.h"
 
 #include <gtest/gtest.h>
@@ -189,6 +190,24 @@ TEST(ToLightfield, TakesThePlanesItIsGiven) {
     EXPECT_EQ(c.lightfield.slabs[0].luminaire_from_slab.translation_m, glm::dvec3(0.0));
     const double e = illuminance(c.lightfield, {0, 0, kDisk_z_m - 4e-3 + 0.01});
     EXPECT_NEAR(e * pi * (kRadius_m * kRadius_m + 1e-4) / kFlux_lm, 1.0, 0.05);
+}
+
+// A Lambertian disk's light all goes forwards; one slab drops what slants most.
+TEST(ToLightfield, TellsTheAnglesOfWhatItDrops) {
+    rays::RaySet set;
+    set.rays = test::lambertian_disk(20000, 0.002, 0.0, 100.0, 5);
+    for (int k = 0; k < 100; ++k)
+        set.rays.push_back({glm::vec3(0), glm::normalize(glm::vec3(0.1F, 0, -1)), 0.001F});
+    rays::ConvertOptions options;
+    options.slabs = 1;
+    options.grid = {5, 5};
+    options.texels = {8, 8};
+    const rays::ConvertReport report = rays::to_lightfield(set, options).report;
+    EXPECT_NEAR(report.direction_angles.most_deg, 180 - 5.71, 0.01);
+    EXPECT_GT(report.direction_angles.least_deg, 89.9);
+    EXPECT_LE(report.s_angles.most_deg, 90);
+    EXPECT_GT(std::max(report.s_angles.most_deg, report.u_angles.most_deg), 70);
+    EXPECT_NE(rays::summary(set, report).find(" ... 174.3 deg from +z)"), std::string::npos);
 }
 
 }  // namespace
