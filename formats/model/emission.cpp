@@ -69,7 +69,8 @@ double cell_integral(const std::array<double, 3>& a, double x0, double x) {
 // the bracket, as where a profile touches zero at a cell's end.
 double invert_cell(const std::array<double, 3>& a, double x0, double target, double guess) {
     constexpr int kMostSteps = 60;
-    constexpr double kClose = 1e-12;  // of a pitch; files hold floats
+    constexpr double kClose =
+        1e-7;  // of a pitch: after such a step of Newton the error is its square
     double low = x0, high = x0 + 1.0, x = std::clamp(guess, low, high);
     for (int k = 0; k < kMostSteps && high - low > kClose; ++k) {
         const double excess = cell_integral(a, x0, x) - target;

@@ -5,6 +5,7 @@
 #include "sample_data/gige/device.h"
 
 #include <algorithm>
+#include <initializer_list>
 
 namespace nearfield::devices {
 namespace {
@@ -17,6 +18,13 @@ constexpr std::uint32_t kUserName = 0x0184, kResponseTime = 0x01CC, kManifestAdd
                         kSbrmAddress = 0x01D8, kSbrm = 0x8000, kSirm = 0x8100, kManifest = 0x8200,
                         kBootstrapEnd = 0x8300;
 constexpr std::uint8_t kMiscellaneous = 0xEF, kUsb3Vision = 0x05, kBulk = 2, kInterface = 0x24;
+
+Bytes concatenated(std::initializer_list<Bytes> parts) {
+    Bytes all;
+    for (const Bytes& part : parts)
+        all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
 
 Bytes bulk_endpoint(std::uint8_t address) {
     return {7, 5, address, kBulk, 0, 4, 0};  // packets of 1024 bytes
@@ -35,15 +43,16 @@ std::vector<std::uint8_t> u3v_descriptors() {
     const Bytes association{8, 11, 0, 2, kMiscellaneous, kUsb3Vision, 0, 0};
     // GenCP 1.0, USB3 Vision 1.0; the camera's names are the device's texts.
     const Bytes camera{20, kInterface, 1, 0, 0, 1, 0, 0, 0, 1, 0, 4, 1, 2, 0, 3, 0, 0, 0, 0};
-    Bytes configuration{9, 2, 0, 0, 2, 1, 0, 0x80, 50};
-    for (const Bytes& part :
-         {association, interface(0, 2, kControl), camera, bulk_endpoint(kU3vControlIn),
-          bulk_endpoint(kControlOut), interface(1, 1, kStream), bulk_endpoint(kU3vStreamIn)})
-        configuration.insert(configuration.end(), part.begin(), part.end());
+    Bytes configuration = concatenated({{9, 2, 0, 0, 2, 1, 0, 0x80, 50},
+                                        association,
+                                        interface(0, 2, kControl),
+                                        camera,
+                                        bulk_endpoint(kU3vControlIn),
+                                        bulk_endpoint(kControlOut),
+                                        interface(1, 1, kStream),
+                                        bulk_endpoint(kU3vStreamIn)});
     configuration[2] = static_cast<std::uint8_t>(configuration.size());
-    Bytes all = device;
-    all.insert(all.end(), configuration.begin(), configuration.end());
-    return all;
+    return concatenated({device, configuration});
 }
 
 U3vBootstrap::U3vBootstrap(const std::string& serial, const Sizes& sizes) : bytes_(kBootstrapEnd) {

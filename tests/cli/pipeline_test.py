@@ -209,5 +209,34 @@ class Convert(ProgramTest):
         self.assertEqual(self.files(), ["back.lightfield.exr", "back.tm25ray"])
 
 
+class Export(ProgramTest):
+    def test_a_lamp_goes_through_every_format_and_back_with_its_flux(self):
+        self.make_lamp()
+        truth = json.loads(self.done("info", "lamp.luminaire.exr", "--json").stdout)["flux"]["value"]
+        for name, options in (("lamp.tm25ray", []), ("lamp.dat", []), ("lamp.ray", []), ("text.ray", ["--format", "lighttools-text"])):
+            said = self.done("export", "lamp.luminaire.exr", "-o", name, "--rays", "20000", "--seed", "2", *options).stderr
+            self.assertIn(f"{name}: 20000 rays", said)
+            self.done("convert", name, "-o", "back.lightfield.exr", "--no-color", "--slabs", "1", "--grid", "5x5", "--texels", "16x16")
+            back = json.loads(self.done("info", "back.lightfield.exr", "--json").stdout)
+            figures = back["provenance"]["figures"]
+            self.assertAlmostEqual(back["flux"]["value"] + figures["flux_dropped_lm"], truth, delta=1e-3 * truth)
+            self.assertLess(figures["flux_dropped_lm"], 0.02 * truth)
+
+    def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(self):
+        self.make_lamp()
+        command = ["export", "lamp.luminaire.exr", "--rays", "70000"]
+        self.done(*command, "-o", "one.tm25ray")
+        self.done(*command, "-o", "two.tm25ray", preexec_fn=on_one_core)
+        self.assertEqual(pathlib.Path("one.tm25ray").read_bytes(), pathlib.Path("two.tm25ray").read_bytes())
+
+    def test_what_cannot_be_is_refused(self):
+        self.make_lamp()
+        for options, words in ((["-o", "x.rays"], ".tm25ray"), (["-o", "x.ray", "--rays", "0"], "--rays"),
+                               (["-o", "x.ray", "--axis", "up"], "--axis"), (["-o", "x.ray", "--origin-mm", "1", "2"], "--origin-mm")):
+            self.assertIn(words, self.refused(2, "export", "lamp.luminaire.exr", *options))
+        self.assertIn("sphere", self.refused(1, "export", "lamp.luminaire.exr", "-o", "x.ray", "--sphere-mm", "1"))
+        self.assertFalse(pathlib.Path("x.ray").exists())
+
+
 if __name__ == "__main__":
     main()

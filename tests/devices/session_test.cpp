@@ -20,8 +20,9 @@ std::vector<std::uint16_t> linear_frame(const gige::Exposure& exposure) {
     const double light = exposure.stage.lamp_on ? exposure.exposure_us / 20 : 0;
     for (std::size_t k = 0; k < values.size(); ++k) {
         const std::size_t noise = (k + 5 * exposure.stage.shot + 3 * exposure.frame_number) % 7;
-        values[k] = static_cast<std::uint16_t>(100 + light * (2 + exposure.stage.filter.x + k % 3) +
-                                               static_cast<double>(noise));
+        values[k] = static_cast<std::uint16_t>(
+            100 + light * (2 + exposure.stage.filter.x + static_cast<int>(k % 3)) +
+            static_cast<double>(noise));
     }
     return values;
 }
