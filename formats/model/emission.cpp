@@ -25,7 +25,7 @@ std::array<double, 8> random_numbers(std::uint64_t index,
                                 static_cast<std::uint32_t>(index >> 32U), attempt, half},
                                {seed, 0x72617973U});  // "rays": a stream of its own
         for (int k = 0; k < 4; ++k)
-            numbers[4 * half + static_cast<std::size_t>(k)] = bits[k] * 0x1p-32;
+            numbers[std::size_t{4} * half + static_cast<std::size_t>(k)] = bits[k] * 0x1p-32;
     }
     return numbers;
 }
