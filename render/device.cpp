@@ -6,6 +6,8 @@
 #include "render/gpu/headless.h"
 #include "render/gpu/render.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 
 namespace nearfield::render {
@@ -13,8 +15,10 @@ namespace {
 
 /// Why not by OpenGL; nothing where it can be.
 std::optional<std::string> reason_for_cpu(const Scene& scene, const RenderOptions& options) {
-    if (scene.environment && options.effects.environment != Switch::Off)
-        return "the scene has an environment";
+    const EnvironmentMethod method = options.environment.method;
+    if (scene.environment && options.effects.environment != Switch::Off &&
+        (method == EnvironmentMethod::Reference || method == EnvironmentMethod::Resampled))
+        return fmt::format("--environment {} traces rays", name_of(method));
     if (options.sigma_measured)
         return "sigma_measured is asked for";
     try {

@@ -37,25 +37,25 @@ Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
                    RenderReport& report) {
-    LampFiles files;
+    KeptFiles files;
     return open_scene(scene, options, device, files, report);
 }
 
 Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
-                   LampFiles& kept,
+                   KeptFiles& kept,
                    RenderReport& report) {
     const Camera& camera = find_camera(scene, options.camera);
     const double start_s = now_s();
-    Opening opening{camera, load_lamps(scene, parts_of(scene, options, device), kept),
+    Opening opening{camera, load_lamps(scene, parts_of(scene, options, device), kept.lamps),
                     complete_size(options.size_px, camera), std::nullopt};
     report.has_sigma_measured =
         std::any_of(opening.lamps.lamps.begin(), opening.lamps.lamps.end(),
                     [](const Lamp& lamp) { return lamp.file->measured.has_value(); });
     report.quantity = opening.lamps.quantity;
     report.plan = plan_of(scene, opening.lamps, options, opening.size_px, device);
-    opening.sky = load_sky(scene, report.plan, options.environment);
+    opening.sky = load_sky(scene, report.plan, options.environment, kept.sky);
     report.load_s = now_s() - start_s;
     return opening;
 }

@@ -32,6 +32,12 @@ struct Opening {
     std::optional<Sky> sky;  // where the plan has an environment
 };
 
+/// What stays loaded from one picture to the next.
+struct KeptFiles {
+    LampFiles lamps;
+    SkyFile sky;
+};
+
 /// Loads lamps and environment with the parts that the device's passes read, and plans; fills the
 /// report's quantity, load_s, has_sigma_measured and plan. Throws Error where the camera or a light
 /// field is missing or not one.
@@ -39,11 +45,11 @@ Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
                    RenderReport& report);
-/// The same with lamps that stay loaded.
+/// The same with files that stay loaded.
 Opening open_scene(const Scene& scene,
                    const RenderOptions& options,
                    Device device,
-                   LampFiles& kept,
+                   KeptFiles& kept,
                    RenderReport& report);
 
 /// Fills what is known at the end: is_error_reached, time_s.

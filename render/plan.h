@@ -23,10 +23,11 @@ enum class PassId {
     Samples,
     ShadowRays,  // CPU
     Gloss,
-    Environment,            // CPU: what is seen past everything
-    EnvironmentIrradiance,  // CPU: diffuse surfaces
-    EnvironmentSamples,     // CPU: gloss; all surfaces where a reference is asked for
+    Environment,            // what is seen past everything
+    EnvironmentIrradiance,  // diffuse surfaces
+    EnvironmentSamples,     // gloss; all surfaces where far lamps or a reference are asked for
     EnvironmentRays,        // CPU: whether the sky is visible
+    EnvironmentMaps,        // GPU: the same by maps, and its fit
     Accumulate,             // GPU: passes added up
     ToneMapping,
 };
@@ -83,5 +84,8 @@ bool plans_gloss(const Scene& scene, const RenderOptions& options);
 int channels_to_load(const RenderOptions& options);
 
 bool has_pass(const Plan& plan, PassId id);
+
+/// Whether visibility of the environment is asked for.
+bool hides_sky(const Plan& plan);
 
 }  // namespace nearfield::render

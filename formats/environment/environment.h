@@ -24,6 +24,8 @@ struct Parts {
     bool harmonics = false;  // for diffuse surfaces
     int directions = 0;      // for shadows of filtered light, or as so many far lamps
     bool is_gray = false;    // luminance in place of colors
+
+    bool operator==(const Parts&) const = default;
 };
 
 struct Environment {

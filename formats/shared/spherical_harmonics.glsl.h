@@ -56,6 +56,10 @@ GPU_FN float cosine_factor(int index) {
     return index == 0 ? 3.14159265f : index < 4 ? 2.09439510f : index < 9 ? 0.785398163f : 0.0f;
 }
 
+// Where harmonics hold a function times a cosine, it is divided out by this at least: they say
+// little where it is small, and are not made larger than 5 times.
+const float kLeastHiddenCosine = 0.2f;
+
 SHARED_END
 
 #endif

@@ -67,7 +67,7 @@ Rendered render_cpu(const Scene& scene, const RenderOptions& options, const Rend
                                                    : bytes_of(cost.id, lamps, report);
     if (opening.sky)
         report.costs.push_back({PassId::Environment, opening.sky->load_s,
-                                environment::bytes(opening.sky->environment)});
+                                environment::bytes(*opening.sky->environment)});
     report.sampling =
         summarize_noise(result.picture.layers[kRadiance], result.picture.layers[kSigma],
                         frame.bias_layer ? &result.picture.layers[*frame.bias_layer] : nullptr,

@@ -3,6 +3,7 @@
 
 #include "formats/shared/brdf_weight.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
+#include "formats/shared/spherical_harmonics.glsl.h"
 #include "render/cpu/sky_filter.h"
 
 #include <algorithm>
@@ -11,14 +12,11 @@
 namespace nearfield::render {
 namespace {
 
-// Shifts of the sky's samples are independent of lamps' and lobes'.
-constexpr std::uint32_t kFilteredSeed = 0x51ed270bU;
-
 /// Cosine times what of the sky is hidden, where any of the directions that were asked for is.
 std::optional<environment::HarmonicValues> hidden_sky(const SkyQuery& query, Scratch& scratch) {
     if (!query.shade.has_shadows)
         return std::nullopt;
-    const environment::VisibilityFit& asked = *query.sky.environment.directions;
+    const environment::VisibilityFit& asked = *query.sky.environment->directions;
     const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
     std::vector<float> hidden(asked.directions.size(), 0.0F);
     bool is_any = false;
@@ -35,20 +33,19 @@ std::optional<environment::HarmonicValues> hidden_sky(const SkyQuery& query, Scr
     return environment::harmonics_of(asked, hidden);
 }
 
-/// Share of a direction's light that arrives. The harmonics hold a cosine, which lobes have
-/// already; where it is small they say little, and what they say is not made larger than 5 times.
+/// Share of a direction's light that arrives: the harmonics hold a cosine, which lobes have
+/// already.
 float visible_share(const environment::HarmonicValues& hidden, glm::vec3 direction, float cosine) {
-    constexpr float kLeastCosine = 0.2F;
-    return 1.0F -
-           std::clamp(environment::value_of(hidden, direction) / std::max(cosine, kLeastCosine),
-                      0.0F, 1.0F);
+    return 1.0F - std::clamp(environment::value_of(hidden, direction) /
+                                 std::max(cosine, shared::kLeastHiddenCosine),
+                             0.0F, 1.0F);
 }
 
 /// What a lobe reflects of the sky: the mean over its samples.
 glm::vec3 filtered_gloss(const SkyQuery& query,
                          const std::optional<environment::HarmonicValues>& hidden) {
     const ShadeQuery& shade = query.shade;
-    const SkyLobe lobe{*query.sky.environment.maps, shade.brdf, shade.frame,
+    const SkyLobe lobe{*query.sky.environment->maps, shade.brdf, shade.frame,
                        query.sky.environment_from_world, to_viewer_local(shade)};
     const glm::vec2 shift = query.options.is_shifted
                                 ? shift_of_set(shade, 0, shade.seed ^ kFilteredSeed)
@@ -72,7 +69,7 @@ glm::vec3 filtered_gloss(const SkyQuery& query,
 /// Irradiance by harmonics, less what is hidden.
 glm::vec3 filtered_irradiance(const SkyQuery& query,
                               const std::optional<environment::HarmonicValues>& hidden) {
-    const environment::Harmonics& sky = *query.sky.environment.harmonics;
+    const environment::Harmonics& sky = *query.sky.environment->harmonics;
     glm::vec3 sum = environment::irradiance(sky, query.sky.local(query.shade.frame.z));
     if (hidden)
         for (std::size_t k = 0; k < hidden->size(); ++k)
@@ -97,17 +94,17 @@ bool is_open(const SkyQuery& query, glm::vec3 direction_world, Scratch& scratch)
 LampLight shade_sky_filtered(const SkyQuery& query, Scratch& scratch) {
     const auto hidden = hidden_sky(query, scratch);
     LampLight light;
-    if (query.sky.environment.harmonics) {
+    if (query.sky.environment->harmonics) {
         light.irradiance = filtered_irradiance(query, hidden);
         light.radiance = light.irradiance * diffuse_of(query.shade);
     }
-    if (query.sky.environment.maps && shared::brdf_is_glossy(query.shade.brdf))
+    if (query.sky.environment->maps && shared::brdf_is_glossy(query.shade.brdf))
         light.radiance += filtered_gloss(query, hidden);
     return light;
 }
 
 LampLight shade_sky_lights(const SkyQuery& query, Scratch& scratch) {
-    const environment::VisibilityFit& lamps = *query.sky.environment.directions;
+    const environment::VisibilityFit& lamps = *query.sky.environment->directions;
     const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
     const glm::vec3 to_viewer = to_viewer_local(query.shade);
     LampLight light;

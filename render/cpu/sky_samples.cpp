@@ -26,7 +26,7 @@ SkyDirection sky_direction(const SkyQuery& query, glm::vec3 world, glm::vec3 rad
                            0.0F};
     if (shared::brdf_is_above(direction.to_light))
         direction.densities =
-            environment::density(*query.sky.environment.table, query.sky.local(world)) +
+            environment::density(*query.sky.environment->table, query.sky.local(world)) +
             shared::brdf_density(query.shade.brdf, direction.to_light,
                                  to_viewer_local(query.shade));
     return direction;
@@ -41,13 +41,13 @@ std::vector<SkyDirection> draw_directions(const SkyQuery& query, int set, int co
     const glm::uvec2 sky_words = words(kSkySeed), brdf_words = words(kSkyBrdfSeed);
     const std::uint32_t choice_word = words(kSkyChoiceSeed).x;
     const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
-    const environment::LatLong& picture = query.sky.environment.picture;
+    const environment::LatLong& picture = query.sky.environment->picture;
     const glm::vec3 to_viewer = to_viewer_local(shade);
     std::vector<SkyDirection> directions;
     for (int k = 0; k < count; ++k) {
         const auto q = static_cast<std::uint32_t>(k);
         const environment::SkySample drawn =
-            environment::draw(*query.sky.environment.table, shared::r2_point(q, sky_words));
+            environment::draw(*query.sky.environment->table, shared::r2_point(q, sky_words));
         if (drawn.density > 0.0F)
             directions.push_back(sky_direction(query, world_from_sky * drawn.direction,
                                                picture.radiance[picture.index(drawn.pixel)]));

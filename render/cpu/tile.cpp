@@ -221,7 +221,7 @@ void shade_sky_block(const Frame& frame, const Pass& pass, int stratum, Block& b
     const float share = pass.weight / static_cast<float>(strata);
     for (std::size_t k = 0; k < block.samples.size(); ++k) {
         ShadeQuery query = query_of(frame, pass, block, k, first_set);
-        query.has_shadows = has_pass(frame.plan, PassId::EnvironmentRays);
+        query.has_shadows = hides_sky(frame.plan);
         const LampLight light =
             shade_sky({*frame.sky, frame.tracer, query, frame.options.environment}, block.scratch);
         const std::size_t index = block.samples[k].index;

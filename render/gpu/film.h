@@ -14,13 +14,14 @@
 
 namespace nearfield::render::gpu {
 
-/// RGBA32F each: 16 bytes a pixel, times four and one a lamp; bounds of bias: 36 bytes more.
+/// RGBA32F each: 16 bytes a pixel, times four and one a lamp and for an environment; bounds of
+/// bias: 36 bytes more.
 struct Film {
     glm::ivec2 size_px{0};
     Texture lamp_light;       // of one lamp, slab after slab: radiance, variance of its luminance
     Texture lamp_irradiance;  // of one lamp
     Texture radiance, irradiance;           // sums over lamps and passes, times the passes' weights
-    std::vector<Texture> of_lamp;           // [lamp] radiance, the same
+    std::vector<Texture> of_lamp;           // [lamp, then environment] radiance, the same
     Texture finer_light, finer_irradiance;  // of one lamp, by sums on finer images; only with bias
     Texture bias;                           // R32F, as the other sums; none where sums are exact
     Program accumulate, add_bias, tonemap;

@@ -28,6 +28,8 @@ std::uint64_t bytes_before(const GlFrame& frame, std::uint64_t surface_bytes, Pa
                    energy_bytes(frame.passes.unshadowed_samples);
         case PassId::Samples:
             return frame.on_card.table_bytes;
+        case PassId::Environment:
+            return frame.sky != nullptr ? frame.sky->on_card.bytes : 0;
         case PassId::Accumulate:
             return pixels * (16U * (4U + frame.film.of_lamp.size()) + (frame.film.bias ? 36U : 0U));
         default:
@@ -53,6 +55,14 @@ void read_surfaces(const Surfaces& surfaces,
         }
         picture.layers[kDepth].values[k] = normal[4 * k + 3];
     }
+}
+
+void read_depth(const Surfaces& surfaces, Picture& picture) {
+    const std::vector<float> position = read_back(surfaces.position, surfaces.size_px, 4);
+    const std::vector<float> normal = read_back(surfaces.normal, surfaces.size_px, 4);
+    std::vector<float>& depth = picture.layers[kDepth].values;
+    for (std::size_t k = 0; k < depth.size(); ++k)
+        depth[k] = position[4 * k + 3] > 0.0F ? normal[4 * k + 3] : 0.0F;
 }
 
 void report_costs(const GlFrame& frame, std::uint64_t surface_bytes, RenderReport& report) {

@@ -14,6 +14,9 @@ void read_surfaces(const Surfaces& surfaces,
                    const std::vector<shared::Brdf>& brdfs,
                    Picture& picture);
 
+/// The same, depth alone: 0 where nothing is seen.
+void read_depth(const Surfaces& surfaces, Picture& picture);
+
 /// What passes took since the device's costs were cleared, and what they hold, by the plan's
 /// passes.
 void report_costs(const GlFrame& frame, std::uint64_t surface_bytes, RenderReport& report);

@@ -2,6 +2,7 @@
 #include "render/gpu/passes.h"
 
 #include "render/film.h"
+#include "render/gpu/frame_report.h"
 #include "render/pass_plan.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ struct Run {
     int drawn = 0;          // samples of a pixel and lamp, all passes
     int samples = 0;        // of the last pass
     double pass_s = 0;
-    std::uint32_t first_set = 0;
+    std::uint32_t first_set = 0, camera_sample = 0;
 };
 
 std::uint32_t sets_of_lamps(const Run& run) {
@@ -65,8 +66,11 @@ Noise noise_of(const Run& run, const SampleQuery& query) {
                           static_cast<double>(film.weight_squares);
     const double degrees = (query.sets.sets - 1) * passes;
     read_film(film, static_cast<float>(degrees > 0.0 ? unbiased_root(degrees) : 1.0), run.picture);
+    if (run.frame.sky != nullptr)
+        read_depth(run.frame.surfaces.surfaces, run.picture);
     const std::vector<Layer>& layers = run.picture.layers;
-    return summarize_noise(layers[kRadiance], layers[kSigma], film.bias ? &layers.back() : nullptr);
+    return summarize_noise(layers[kRadiance], layers[kSigma], film.bias ? &layers.back() : nullptr,
+                           run.frame.sky != nullptr ? &layers[kDepth] : nullptr);
 }
 
 void add_whole_pass(Run& run, bool has_goal) {
@@ -82,8 +86,9 @@ void add_whole_pass(Run& run, bool has_goal) {
         const glm::dvec2 at_px =
             (glm::dvec2(stratum % strata, stratum / strata) + 0.5) / static_cast<double>(strata);
         query.first_set = run.first_set;
-        add_pass(run.frame, at_px, query, weight);
+        add_pass(run.frame, at_px, query, run.camera_sample, weight);
         run.first_set += sets_of_lamps(run);
+        ++run.camera_sample;
         if (run.report.passes == 0 && stratum == strata * strata / 2)
             find_unmapped(run, query);
         report_progress(run, (stratum + 1.0) / (strata * strata), has_goal);
@@ -114,7 +119,11 @@ void draw_shadow_maps(GlFrame& frame, const ShadowPass& pass) {
             });
 }
 
-void add_pass(GlFrame& frame, glm::dvec2 at_px, const SampleQuery& query, float weight) {
+void add_pass(GlFrame& frame,
+              glm::dvec2 at_px,
+              const SampleQuery& query,
+              std::uint32_t camera_sample,
+              float weight) {
     frame.device.run_pass("g-buffer", [&] {
         draw_surfaces(frame.scene_buffers, frame.opening.camera, at_px, frame.surfaces);
     });
@@ -134,6 +143,12 @@ void add_pass(GlFrame& frame, glm::dvec2 at_px, const SampleQuery& query, float 
         }
         add_samples(frame.device, frame.passes, frame.on_card, pass);
         frame.device.run_pass("accumulate", [&] { end_lamp(frame.film, k, weight); });
+    }
+    if (frame.sky != nullptr) {
+        begin_lamp(frame.film);
+        add_sky_light(frame.device, frame.options, camera_sample, *frame.sky);
+        frame.device.run_pass(
+            "accumulate", [&] { end_lamp(frame.film, frame.opening.lamps.lamps.size(), weight); });
     }
     end_pass(frame.film, weight);
 }

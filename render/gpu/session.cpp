@@ -124,11 +124,12 @@ class StopScope {
 struct Session::Kept {
     HeadlessContext context;
     Device device;
-    LampFiles files;
+    KeptFiles files;
     Scene geometry;  // that scene_buffers hold
     std::optional<SceneBuffers> scene_buffers;
     LampsOnCard on_card;
     ShadowPass shadow_pass = make_shadow_pass();
+    SkyKept sky;
     std::list<Target> targets;
     std::list<std::pair<Variant, LightPasses>> variants;
     // Of on_card.shadows; and those of other options, since drafts alternate with pictures.
@@ -204,11 +205,8 @@ Rendered Session::render(const Scene& scene,
     const Opening opening = open_scene(scene, options, render::Device::Gl, kept_->files, report);
     const Lamps& lamps = opening.lamps;
     const Plan& plan = report.plan;
-    if (plan.has_environment)
-        throw Error{"cannot render by OpenGL", "environment",
-                    "none, or --effect environment=off: the CPU renders it", "one"};
     const bool has_bias = !options.sampler && options.q > 0 && options.has_bias_bound;
-    result.picture = make_picture(lamps, opening.size_px, {});
+    result.picture = make_picture(lamps, opening.size_px, {plan.has_environment, false});
     if (has_bias)
         add_bias_layer(result.picture);
 
@@ -219,7 +217,8 @@ Rendered Session::render(const Scene& scene,
     kept_->use_scene(scene, brdfs);
     upload_lamps(device, lamps, plan, options, kept_->on_card);
     report.lamp_bytes = static_cast<double>(kept_->on_card.sum_bytes + kept_->on_card.table_bytes);
-    Target& target = kept_->use_target(opening.size_px, lamps.lamps.size(), has_bias);
+    const std::size_t lights = lamps.lamps.size() + (opening.sky ? 1 : 0);
+    Target& target = kept_->use_target(opening.size_px, lights, has_bias);
     clear(target.film);
     GlFrame frame{scene,
                   options,
@@ -237,6 +236,11 @@ Rendered Session::render(const Scene& scene,
 
     kept_->use_shadows(options.shadow_maps, lamps.lamps.size());
     draw_shadow_maps(frame, kept_->shadow_pass);
+    if (opening.sky && !only) {
+        prepare_sky(device, *opening.sky, plan, options, *kept_->scene_buffers, opening.size_px,
+                    kept_->sky);
+        frame.sky = &kept_->sky;
+    }
     add_passes(frame, call, result.picture, report);
     read_surfaces(target.surfaces.surfaces, brdfs, result.picture);
     if (options.shows_lamps)

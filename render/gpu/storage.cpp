@@ -108,6 +108,30 @@ Texture make_texture_array(
     return texture;
 }
 
+Texture make_mipped_array(
+    Device& device, const std::string& what, GLenum internal_format, int side_px, int layers) {
+    check_size(device, what, glm::ivec2(side_px), layers);
+    std::uint64_t bytes = 0;
+    int levels = 0;
+    for (int side = side_px; side > 0; side /= 2, ++levels)
+        bytes += bytes_of(internal_format, glm::ivec2(side), layers);
+    device.check_room(what, bytes);
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    Texture texture(id);
+    glTextureStorage3D(id, levels, internal_format, side_px, side_px, layers);
+    device.check_allocation(what, bytes);
+    set_nearest(id);
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    device.count_allocation(bytes);
+    return texture;
+}
+
+void upload_level(const Texture& array, int level, int side_px, int layer, const float* values) {
+    glTextureSubImage3D(array.id(), level, 0, 0, layer, side_px, side_px, 1, GL_RGBA, GL_FLOAT,
+                        values);
+}
+
 void upload_layers(const Texture& array,
                    glm::ivec2 size,
                    int first_layer,

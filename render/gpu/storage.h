@@ -27,6 +27,13 @@ Texture make_texture(Device& device,
 Texture make_texture_array(
     Device& device, const std::string& what, GLenum internal_format, glm::ivec2 size, int layers);
 
+/// A square array with all its mips; side_px: a power of two.
+Texture make_mipped_array(
+    Device& device, const std::string& what, GLenum internal_format, int side_px, int layers);
+
+/// Fills one level of a layer of an array of four floats a texel: [row][column][channel].
+void upload_level(const Texture& array, int level, int side_px, int layer, const float* values);
+
 /// Fills layers first_layer ... of an array of one or two floats a texel (R32F, RG32F, RG16F),
 /// values as in memory: [layer][row][column][channel].
 void upload_layers(const Texture& array,

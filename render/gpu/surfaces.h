@@ -23,8 +23,8 @@ struct Surfaces {
     glm::ivec2 size_px{0};
     bool has_tangents = false;  // else shaders are compiled without HAS_TANGENTS
     Texture position;           // RGBA32F: world, metres; 1 + material, 0: nothing is seen
-    Texture normal;   // RGBA32F: world, unit length, towards the viewer; depth along the camera's
-                      // axis, metres
+    Texture normal;   // RGBA32F: world, unit length, towards the viewer (where nothing is seen: the
+                      // ray's direction); depth along the camera's axis, metres
     Texture tangent;  // RGBA32F: world, of any length; only with has_tangents
     Buffer frame;     // FrameBlock
 };

@@ -41,9 +41,10 @@ void main() {
         return;
     }
     uint triangle = texelFetch(seen_triangle, pixel, 0).r;
+    dvec3 direction = normalize(world_from_pixel * dvec3(pixel, 1.0lf));
     if (triangle == 0u) {
         imageStore(position_image, pixel, vec4(0.0));
-        imageStore(normal_image, pixel, vec4(0.0));
+        imageStore(normal_image, pixel, vec4(vec3(direction), 0.0));
 #ifdef HAS_TANGENTS
         imageStore(tangent_image, pixel, vec4(0.0));
 #endif
@@ -55,7 +56,6 @@ void main() {
     dvec3 a = dvec3(positions[ia].xyz) - eye_world_m;
     dvec3 b = dvec3(positions[ib].xyz) - eye_world_m;
     dvec3 c = dvec3(positions[ic].xyz) - eye_world_m;
-    dvec3 direction = normalize(world_from_pixel * dvec3(pixel, 1.0lf));
     dvec3 plane = cross(b - a, c - a);
     double cosine = dot(plane, direction) / length(plane);
     dvec3 hit = abs(cosine) > 0.0lf ? direction * (dot(plane, a) / dot(plane, direction)) : a;

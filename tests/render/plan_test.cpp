@@ -291,7 +291,9 @@ TEST(Plan, DevicesShareTheTable) {
     EXPECT_EQ(names(Device::Cpu, false),
               "gloss;environment;sky irradiance;sky samples;sky rays;tone mapping;");
     EXPECT_EQ(names(Device::Gl, true), "g-buffer;shadow maps;light sums;accumulate;");
-    EXPECT_EQ(names(Device::Gl, false), "box energies;samples;gloss;tone mapping;");
+    EXPECT_EQ(
+        names(Device::Gl, false),
+        "box energies;samples;gloss;environment;sky maps;sky irradiance;sky samples;tone mapping;");
 }
 
 // Proves that the explanation has a line for each pass and lamp, in or out, with its reason, and

@@ -98,7 +98,7 @@ LitFrame light_by_gl(Device& device, const Scene& scene, const RenderOptions& op
     query.size_px = opening.size_px;
     query.sets = sets_of(options, options.samples);
     query.seed = options.seed;
-    add_pass(frame, glm::dvec2(0.5), query, 1.0F);
+    add_pass(frame, glm::dvec2(0.5), query, 0, 1.0F);
     LitFrame lit{make_picture(opening.lamps, opening.size_px, {}), {}};
     read_film(film, 1.0F, lit.picture);
     lit.hits = read_hits(surfaces.surfaces);

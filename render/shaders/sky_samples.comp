@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lobes reflect of the environment, by filtered samples: as filtered_gloss of
+// render/cpu/shade_sky.cpp. LEVEL: filtered_samples.glsl.h; IS_ANISOTROPIC; HAS_SHIFT: a texture
+// shifts each pixel's samples; HAS_SHADOWS.
+#include "formats/shared/brdf_weight.glsl.h"
+#include "formats/shared/filtered_samples.glsl.h"
+#include "render/shaders/sky.glsl"
+
+#ifndef LEVEL
+#define LEVEL kLevelFis
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 5) uniform sampler2DArray sky_maps;
+#ifdef HAS_SHIFT
+layout(binding = 6) uniform sampler2D sky_shift;
+#endif
+
+int map_side() { return textureSize(sky_maps, 0).x; }
+
+vec3 on_level(ParaboloidPoint point, int level) {
+    // llvmpipe asks for the size of one level for all pixels that it shades together.
+    LinearTaps taps = linear_taps(point.at, map_side() >> level);
+    ivec3 low = ivec3(taps.low, point.side), high = ivec3(taps.high, point.side);
+    return mix(mix(texelFetch(sky_maps, low, level).rgb,
+                   texelFetch(sky_maps, ivec3(high.x, low.y, low.z), level).rgb, taps.part.x),
+               mix(texelFetch(sky_maps, ivec3(low.x, high.y, low.z), level).rgb,
+                   texelFetch(sky_maps, high, level).rgb, taps.part.x),
+               taps.part.y);
+}
+
+vec3 filtered(vec3 direction, float level) {
+    ParaboloidPoint point = paraboloid_from_direction(direction);
+    float clamped = clamp(level, 0.0, float(textureQueryLevels(sky_maps) - 1));
+    int finer = int(clamped);
+    float part = clamped - float(finer);
+    vec3 value = on_level(point, finer);
+    return part > 0.0 ? mix(value, on_level(point, finer + 1), part) : value;
+}
+
+struct Lobe {
+    Brdf brdf;
+    SurfaceFrame frame;
+    vec3 to_viewer;  // local
+};
+
+vec3 in_environment(Lobe lobe, vec3 local) {
+    return sky_direction(world_from_local(lobe.frame, local));
+}
+
+vec3 filtered_light(Lobe lobe, vec2 xi, vec3 direction, float density) {
+    float count = float(sky.counts.x);
+#ifdef IS_ANISOTROPIC
+    ParaboloidPoint middle = paraboloid_from_direction(direction);
+    vec2 half_axis[2];
+    for (int axis = 0; axis < 2; ++axis)
+        half_axis[axis] = map_offset(
+            middle, in_environment(lobe, brdf_lobe_sample(lobe.brdf, lobe.to_viewer,
+                                                          beside_point(xi, axis, count))));
+    MapLookups lookups = lookups_along(half_axis[0], half_axis[1], float(map_side()));
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < lookups.taps; ++k)
+        sum += filtered(direction_from_paraboloid(middle.side, lookup_at(middle.at, lookups, k)),
+                        lookups.level);
+    return sum / float(lookups.taps);
+#else
+    float texels = texels_per_sample(float(map_side() * map_side()), count, density,
+                                     paraboloid_sr_per_area(direction));
+    return filtered(direction, filter_level(LEVEL, texels));
+#endif
+}
+
+float visible_share(Hidden hidden, vec3 direction, float cosine) {
+#ifdef HAS_SHADOWS
+    float value = 0.0;
+    for (int k = 0; k < kHarmonics; ++k)
+        value += hidden.value[k] * harmonic(k, direction);
+    return 1.0 - clamp(value / max(cosine, kLeastHiddenCosine), 0.0, 1.0);
+#else
+    return 1.0;
+#endif
+}
+
+vec2 shift_of(ivec2 pixel) {
+#ifdef HAS_SHIFT
+    return texelFetch(sky_shift, pixel, 0).rg;
+#else
+    return vec2(0.0);
+#endif
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(lamp_light))))
+        return;
+    Surface surface = surface_at(pixel);
+    if (surface.material < 0)
+        return;
+    Lobe lobe;
+    lobe.brdf = brdf_of(surface);
+    if (!brdf_is_glossy(lobe.brdf))
+        return;
+    lobe.frame = frame_of(surface);
+    lobe.to_viewer = local_from_world(lobe.frame, surface.to_viewer);
+    Hidden hidden = hidden_at(pixel);
+    vec2 shift = shift_of(pixel);
+    uint count = uint(sky.counts.x);
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < count; ++i) {
+        vec2 xi = fract(hammersley_point(i, count) + shift);
+        vec3 to_light = brdf_lobe_sample(lobe.brdf, lobe.to_viewer, xi);
+        float density = brdf_lobe_density(lobe.brdf, to_light, lobe.to_viewer);
+        if (!(density > 0.0))
+            continue;
+        vec3 direction = in_environment(lobe, to_light);
+        sum += filtered_light(lobe, xi, direction, density) *
+               brdf_lobe_weight(lobe.brdf, to_light, lobe.to_viewer) *
+               visible_share(hidden, direction, to_light.z);
+    }
+    add_light(pixel, sum * (sky.intensity.x / float(count)), vec3(0.0));
+}
