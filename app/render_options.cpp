@@ -94,6 +94,8 @@ void add_environment_options(CLI::App& sub, RenderCommand& c) {
     add_number(sub, "--environment-directions", around.directions, 0, 4096, "N",
                "in which filtered light asks whether the sky is visible, 0: in none; of lights: "
                "how many");
+    add_number(sub, "--environment-suns", around.suns, 0, 4096, "N",
+               "of filtered: small bright parts of it that are summed one by one, at most");
     add_number(sub, "--environment-map-px", around.map_px, 1, 16384, "PX",
                "gl: a side of the shadow map of each direction");
 }

@@ -199,6 +199,7 @@ Provenance describe(const Scene& scene, const RenderOptions& options, const Rend
                                         around.is_anisotropic ? "true" : "false");
         provenance.options.emplace_back("environment-directions",
                                         fmt::format("{}", around.directions));
+        provenance.options.emplace_back("environment-suns", fmt::format("{}", around.suns));
         provenance.options.emplace_back("environment-shift", around.is_shifted ? "true" : "false");
         provenance.inputs.push_back(describe_input(scene.environment->path));
     }

@@ -53,6 +53,7 @@ struct EnvironmentOptions {
     bool is_anisotropic = false;  // several lookups along what a sample stands for
     bool is_shifted = false;      // a random shift a pixel: noise in place of structured error
     int directions = 16;  // in which filtered light asks for visibility, 0: none; of Lights: lamps
+    int suns = 32;        // of Filtered: small bright parts summed apart, at most; 0: none
     int map_px = 512;     // a side of the maps that OpenGL draws of each direction
 };
 

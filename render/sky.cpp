@@ -18,6 +18,7 @@ environment::Parts parts_of(const Plan& plan, const EnvironmentOptions& options)
     parts.harmonics = is_filtered && has_pass(plan, PassId::EnvironmentIrradiance);
     if ((is_filtered && hides_sky(plan)) || options.method == EnvironmentMethod::Lights)
         parts.directions = options.directions;
+    parts.suns = is_filtered ? options.suns : 0;
     parts.is_gray = plan.color.is_removed;
     return parts;
 }

@@ -10,6 +10,7 @@
 #include "formats/environment/latlong.h"
 #include "formats/environment/paraboloid_map.h"
 #include "formats/environment/sky_table.h"
+#include "formats/environment/suns.h"
 #include "formats/environment/visibility_fit.h"
 
 #include <optional>
@@ -22,6 +23,7 @@ struct Parts {
     bool maps = false;       // for filtered samples
     bool table = false;      // for samples by luminance
     bool harmonics = false;  // for diffuse surfaces
+    int suns = 0;            // taken out of maps and harmonics, at most
     int directions = 0;      // for shadows of filtered light, or as so many far lamps
     bool is_gray = false;    // luminance in place of colors
 
@@ -30,9 +32,12 @@ struct Parts {
 
 struct Environment {
     LatLong picture;
-    std::optional<ParaboloidMap> maps;
+    std::optional<Suns> suns;           // only if there are any; without the rest, which is in maps
+    std::optional<ParaboloidMap> maps;  // without suns
+    std::optional<ParaboloidMap>
+        maps_with_suns;  // only beside suns: for lobes that show their shape
     std::optional<SkyTable> table;
-    std::optional<Harmonics> harmonics;
+    std::optional<Harmonics> harmonics;  // without suns
     std::optional<VisibilityFit> directions;
 };
 

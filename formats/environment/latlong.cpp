@@ -5,6 +5,7 @@
 #include "formats/files/image.h"
 #include "formats/photos/photo.h"
 #include "formats/shared/environment_maps.glsl.h"
+#include "formats/shared/tonemap.glsl.h"
 
 #include <fmt/format.h>
 
@@ -89,6 +90,16 @@ double pixel_sr(const LatLong& picture, int y) {
     const double pi = std::acos(-1.0);
     const double middle = pi * (y + 0.5) / picture.size_px.y;
     return 4.0 * pi / picture.size_px.x * std::sin(middle) * std::sin(0.5 * pi / picture.size_px.y);
+}
+
+float mean_luminance(const LatLong& picture) {
+    double sum = 0.0;
+    for (int y = 0; y < picture.size_px.y; ++y)
+        for (int x = 0; x < picture.size_px.x; ++x)
+            sum +=
+                pixel_sr(picture, y) *
+                static_cast<double>(shared::luminance709(picture.radiance[picture.index({x, y})]));
+    return static_cast<float>(sum / (4.0 * std::acos(-1.0)));
 }
 
 glm::vec3 pixel_direction(const LatLong& picture, glm::ivec2 pixel) {

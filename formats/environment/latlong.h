@@ -36,6 +36,9 @@ glm::vec3 radiance(const LatLong& picture, glm::vec3 direction);
 /// Solid angle of a pixel of row y, exactly: a zone's share.
 double pixel_sr(const LatLong& picture, int y);
 
+/// Over all directions.
+float mean_luminance(const LatLong& picture);
+
 /// The direction to a pixel's middle.
 glm::vec3 pixel_direction(const LatLong& picture, glm::ivec2 pixel);
 

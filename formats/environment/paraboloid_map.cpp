@@ -39,16 +39,6 @@ float plain_share(glm::vec3 rgb, float brightest) {
     return luminance > brightest ? brightest / luminance : 1.0F;
 }
 
-float mean_luminance(const LatLong& picture) {
-    double sum = 0.0;
-    for (int y = 0; y < picture.size_px.y; ++y)
-        for (int x = 0; x < picture.size_px.x; ++x)
-            sum +=
-                pixel_sr(picture, y) *
-                static_cast<double>(shared::luminance709(picture.radiance[picture.index({x, y})]));
-    return static_cast<float>(sum / (4.0 * std::acos(-1.0)));
-}
-
 /// The picture without what goes beyond `brightest`.
 LatLong plain_part(const LatLong& picture, float brightest) {
     LatLong plain = picture;

@@ -4,6 +4,7 @@
 #include "formats/shared/brdf_weight.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
 #include "formats/shared/spherical_harmonics.glsl.h"
+#include "formats/shared/suns.glsl.h"
 #include "render/cpu/sky_filter.h"
 
 #include <algorithm>
@@ -41,12 +42,19 @@ float visible_share(const environment::HarmonicValues& hidden, glm::vec3 directi
                              0.0F, 1.0F);
 }
 
-/// What a lobe reflects of the sky: the mean over its samples.
+using Hidden = std::optional<environment::HarmonicValues>;
+
+float visible_share(const Hidden& hidden, glm::vec3 direction, float cosine) {
+    return hidden ? visible_share(*hidden, direction, cosine) : 1.0F;
+}
+
+/// What a lobe reflects of one of the maps: the mean over its samples.
 glm::vec3 filtered_gloss(const SkyQuery& query,
-                         const std::optional<environment::HarmonicValues>& hidden) {
+                         const environment::ParaboloidMap& map,
+                         const Hidden& hidden) {
     const ShadeQuery& shade = query.shade;
-    const SkyLobe lobe{*query.sky.environment->maps, shade.brdf, shade.frame,
-                       query.sky.environment_from_world, to_viewer_local(shade)};
+    const SkyLobe lobe{map, shade.brdf, shade.frame, query.sky.environment_from_world,
+                       to_viewer_local(shade)};
     const glm::vec2 shift = query.options.is_shifted
                                 ? shift_of_set(shade, 0, shade.seed ^ kFilteredSeed)
                                 : glm::vec2(0.0F);
@@ -58,23 +66,52 @@ glm::vec3 filtered_gloss(const SkyQuery& query,
         const float density = shared::brdf_lobe_density(shade.brdf, to_light, lobe.to_viewer);
         if (!(density > 0.0F))
             continue;
-        const glm::vec3 light = filtered_light(lobe, query.options, xi, to_light, density) *
-                                shared::brdf_lobe_weight(shade.brdf, to_light, lobe.to_viewer);
-        sum += hidden ? light * visible_share(*hidden, lobe.in_environment(to_light), to_light.z)
-                      : light;
+        sum += filtered_light(lobe, query.options, xi, to_light, density) *
+               shared::brdf_lobe_weight(shade.brdf, to_light, lobe.to_viewer) *
+               visible_share(hidden, lobe.in_environment(to_light), to_light.z);
     }
-    return sum * (query.sky.intensity / static_cast<float>(count));
+    return sum / static_cast<float>(count);
+}
+
+/// Light of the suns, as points: irradiance, and what the lobe reflects of it.
+LampLight sun_light(const SkyQuery& query, const Hidden& hidden) {
+    const glm::mat3 world_from_sky = glm::transpose(query.sky.environment_from_world);
+    const glm::vec3 to_viewer = to_viewer_local(query.shade);
+    LampLight light;
+    for (const environment::Sun& sun : query.sky.environment->suns->suns) {
+        const glm::vec3 to_light =
+            shared::local_from_world(query.shade.frame, world_from_sky * sun.direction);
+        if (!shared::brdf_is_above(to_light))
+            continue;
+        const glm::vec3 arriving =
+            sun.irradiance * to_light.z * visible_share(hidden, sun.direction, to_light.z);
+        light.irradiance += arriving;
+        if (shared::brdf_is_glossy(query.shade.brdf))
+            light.radiance += arriving * shared::brdf_lobe(query.shade.brdf, to_light, to_viewer);
+    }
+    return light;
+}
+
+/// What a lobe reflects of the sky without suns, and of these what the maps show of them. share: of
+/// suns, in maps.
+glm::vec3 filtered_gloss(const SkyQuery& query, float share, const Hidden& hidden) {
+    const environment::Environment& around = *query.sky.environment;
+    glm::vec3 sum(0.0F);
+    if (share < 1.0F)
+        sum += (1.0F - share) * filtered_gloss(query, *around.maps, hidden);
+    if (share > 0.0F)
+        sum += share * filtered_gloss(query, *around.maps_with_suns, hidden);
+    return sum;
 }
 
 /// Irradiance by harmonics, less what is hidden.
-glm::vec3 filtered_irradiance(const SkyQuery& query,
-                              const std::optional<environment::HarmonicValues>& hidden) {
+glm::vec3 filtered_irradiance(const SkyQuery& query, const Hidden& hidden) {
     const environment::Harmonics& sky = *query.sky.environment->harmonics;
     glm::vec3 sum = environment::irradiance(sky, query.sky.local(query.shade.frame.z));
     if (hidden)
         for (std::size_t k = 0; k < hidden->size(); ++k)
             sum -= sky.radiance.at(k) * hidden->at(k);
-    return query.sky.intensity * glm::max(sum, 0.0F);
+    return glm::max(sum, 0.0F);
 }
 
 }  // namespace
@@ -92,14 +129,24 @@ bool is_open(const SkyQuery& query, glm::vec3 direction_world, Scratch& scratch)
 }
 
 LampLight shade_sky_filtered(const SkyQuery& query, Scratch& scratch) {
-    const auto hidden = hidden_sky(query, scratch);
+    const environment::Environment& around = *query.sky.environment;
+    const Hidden hidden = hidden_sky(query, scratch);
+    const LampLight suns = around.suns ? sun_light(query, hidden) : LampLight{};
     LampLight light;
-    if (query.sky.environment->harmonics) {
-        light.irradiance = filtered_irradiance(query, hidden);
+    if (around.harmonics) {
+        light.irradiance =
+            query.sky.intensity * (filtered_irradiance(query, hidden) + suns.irradiance);
         light.radiance = light.irradiance * diffuse_of(query.shade);
     }
-    if (query.sky.environment->maps && shared::brdf_is_glossy(query.shade.brdf))
-        light.radiance += filtered_gloss(query, hidden);
+    if (around.maps && shared::brdf_is_glossy(query.shade.brdf)) {
+        const float share =
+            around.suns ? shared::suns_in_maps(shared::brdf_lobe_width_rad(
+                                                   query.shade.brdf, to_viewer_local(query.shade)),
+                                               around.suns->radius_rad)
+                        : 0.0F;
+        light.radiance += query.sky.intensity *
+                          (filtered_gloss(query, share, hidden) + (1.0F - share) * suns.radiance);
+    }
     return light;
 }
 

@@ -21,14 +21,18 @@ struct SkyDirection {
     float densities = 0.0F;  // of both ways, added; 0: the direction is worth nothing
 };
 
-SkyDirection sky_direction(const SkyQuery& query, glm::vec3 world, glm::vec3 radiance) {
+/// sky_density: of the pixel that radiance is of. Asked for by the direction again, one at a sun's
+/// border might be taken for its dark neighbor's, and weigh thousands of times too much.
+SkyDirection sky_direction(const SkyQuery& query,
+                           glm::vec3 world,
+                           glm::vec3 radiance,
+                           float sky_density) {
     SkyDirection direction{world, shared::local_from_world(query.shade.frame, world), radiance,
                            0.0F};
     if (shared::brdf_is_above(direction.to_light))
         direction.densities =
-            environment::density(*query.sky.environment->table, query.sky.local(world)) +
-            shared::brdf_density(query.shade.brdf, direction.to_light,
-                                 to_viewer_local(query.shade));
+            sky_density + shared::brdf_density(query.shade.brdf, direction.to_light,
+                                               to_viewer_local(query.shade));
     return direction;
 }
 
@@ -50,13 +54,16 @@ std::vector<SkyDirection> draw_directions(const SkyQuery& query, int set, int co
             environment::draw(*query.sky.environment->table, shared::r2_point(q, sky_words));
         if (drawn.density > 0.0F)
             directions.push_back(sky_direction(query, world_from_sky * drawn.direction,
-                                               picture.radiance[picture.index(drawn.pixel)]));
+                                               picture.radiance[picture.index(drawn.pixel)],
+                                               drawn.density));
         const glm::vec2 xi = shared::r2_point(q, brdf_words);
         const float choice = shared::unit_float(shared::golden_word(q) + choice_word);
         const glm::vec3 world = shared::world_from_local(
             shade.frame, shared::brdf_sample(shade.brdf, to_viewer, glm::vec3(xi, choice)));
+        const glm::vec3 in_sky = query.sky.local(world);
         directions.push_back(
-            sky_direction(query, world, environment::radiance(picture, query.sky.local(world))));
+            sky_direction(query, world, environment::radiance(picture, in_sky),
+                          environment::density(*query.sky.environment->table, in_sky)));
     }
     return directions;
 }

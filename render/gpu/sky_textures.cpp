@@ -13,14 +13,14 @@ namespace nearfield::render::gpu {
 namespace {
 
 // Bindings of sky.glsl and of sky_samples.comp, sky_past.comp, sky_visibility.comp.
-constexpr GLuint kBlock = 2, kDirections = 5, kFit = 7;
-constexpr GLuint kPicture = 4, kMaps = 5;
+constexpr GLuint kBlock = 2, kSuns = 4, kDirections = 5, kFit = 7;
+constexpr GLuint kPicture = 4, kMaps = 5, kMapsWithSuns = 8;
 
 // As std140 lays SkyBlock of sky.glsl out.
 struct SkyBlock {
     glm::mat4 environment_from_world;
     std::array<glm::vec4, 16> harmonics;
-    glm::vec4 intensity;
+    glm::vec4 intensity_sun;
     glm::ivec4 counts;
 };
 static_assert(sizeof(SkyBlock) == 64 + 256 + 32);
@@ -50,6 +50,15 @@ Texture upload_maps(Device& device, const environment::ParaboloidMap& map) {
     return texture;
 }
 
+Buffer upload_suns(Device& device, const environment::Suns& suns) {
+    std::vector<glm::vec4> values;
+    for (const environment::Sun& sun : suns.suns) {
+        values.emplace_back(sun.direction, 0.0F);
+        values.emplace_back(sun.irradiance, 0.0F);
+    }
+    return make_buffer_of(device, values, "the environment's suns");
+}
+
 void upload_directions(Device& device, const environment::VisibilityFit& fit, SkyOnCard& on_card) {
     std::vector<glm::vec4> values;
     for (std::size_t n = 0; n < fit.directions.size(); ++n) {
@@ -68,6 +77,10 @@ SkyBlock block_of(const Sky& sky, int samples) {
     if (const auto& harmonics = sky.environment->harmonics)
         std::transform(harmonics->radiance.begin(), harmonics->radiance.end(),
                        block.harmonics.begin(), [](glm::vec3 rgb) { return glm::vec4(rgb, 0.0F); });
+    if (const auto& suns = sky.environment->suns) {
+        block.intensity_sun.y = suns->radius_rad;
+        block.counts.z = static_cast<int>(suns->suns.size());
+    }
     if (const auto& asked = sky.environment->directions)
         block.counts.y = static_cast<int>(asked->directions.size());
     return block;
@@ -82,6 +95,9 @@ void upload_sky(Device& device, const Sky& sky, int samples, SkyOnCard& on_card)
         on_card.picture = upload_picture(device, sky.environment->picture);
         if (sky.environment->maps)
             on_card.maps = upload_maps(device, *sky.environment->maps);
+        if (sky.environment->maps_with_suns)
+            on_card.maps_with_suns = upload_maps(device, *sky.environment->maps_with_suns);
+        on_card.suns = upload_suns(device, sky.environment->suns.value_or(environment::Suns{}));
         upload_directions(
             device, sky.environment->directions.value_or(environment::VisibilityFit{}), on_card);
         on_card.block = make_zero_buffer(device, sizeof(SkyBlock), "the environment's place");
@@ -99,6 +115,8 @@ void bind_sky(const SkyOnCard& on_card) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFit, on_card.fit.id());
     glBindTextureUnit(kPicture, on_card.picture.id());
     glBindTextureUnit(kMaps, on_card.maps.id());
+    glBindTextureUnit(kMapsWithSuns, on_card.maps_with_suns.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSuns, on_card.suns.id());
 }
 
 }  // namespace nearfield::render::gpu

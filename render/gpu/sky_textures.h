@@ -18,17 +18,13 @@ namespace nearfield::render::gpu {
 struct SkyOnCard {
     std::shared_ptr<const environment::Environment> environment;  // that textures hold
     Texture picture;                                              // RGBA32F
-    Texture maps;       // RGBA32F array [side] with mips; only for filtered samples
-    Buffer directions;  // SkyDirection [N]
-    Buffer fit;         // floats [16][N]
-    Buffer block;       // SkyBlock
+    Texture maps;            // RGBA32F array [side] with mips; only for filtered samples
+    Texture maps_with_suns;  // the same; only beside suns
+    Buffer suns;             // SkyDirection [N]
+    Buffer directions;       // SkyDirection [N]
+    Buffer fit;              // floats [16][N]
+    Buffer block;            // SkyBlock
     std::uint64_t bytes = 0;
-
-    int direction_count() const {
-        return environment->directions
-                   ? static_cast<int>(environment->directions->directions.size())
-                   : 0;
-    }
 };
 
 /// Uploads the environment unless it is there, and where it is turned to. Throws Error where it

@@ -7,8 +7,8 @@
 layout(std140, binding = 2) uniform SkyBlock {
     mat4 environment_from_world;
     vec4 harmonics[kHarmonics];  // radiance, r g b
-    vec4 intensity;              // x
-    ivec4 counts;                // filtered samples; directions
+    vec4 intensity_sun;          // intensity; the largest sun's radius, radians
+    ivec4 counts;                // filtered samples; directions; suns
 } sky;
 
 // Of directions that hold most of the light: in the environment's frame; radiance over (count
@@ -17,6 +17,8 @@ struct SkyDirection {
     vec4 direction, light;
 };
 layout(std430, binding = 5) readonly restrict buffer SkyDirections { SkyDirection sky_directions[]; };
+// Suns that are summed apart; light: irradiance on a surface that faces them.
+layout(std430, binding = 4) readonly restrict buffer SkySuns { SkyDirection sky_suns[]; };
 
 #ifdef HAS_SHADOWS
 // What of the sky is hidden times the cosine: 16 coefficients, four a layer.
@@ -45,6 +47,17 @@ Hidden hidden_at(ivec2 pixel) {
             hidden.value[4 * layer + k] = four[k];
     }
     return hidden;
+}
+
+float visible_share(Hidden hidden, vec3 direction, float cosine) {
+#ifdef HAS_SHADOWS
+    float value = 0.0;
+    for (int k = 0; k < kHarmonics; ++k)
+        value += hidden.value[k] * harmonic(k, direction);
+    return 1.0 - clamp(value / max(cosine, kLeastHiddenCosine), 0.0, 1.0);
+#else
+    return 1.0;
+#endif
 }
 
 void add_light(ivec2 pixel, vec3 radiance, vec3 irradiance) {

@@ -19,7 +19,14 @@ void main() {
     Hidden hidden = hidden_at(pixel);
     for (int k = 0; k < kHarmonics; ++k)
         sum -= sky.harmonics[k].rgb * hidden.value[k];
-    vec3 irradiance = sky.intensity.x * max(sum, vec3(0.0));
+    sum = max(sum, vec3(0.0));
+    for (int n = 0; n < sky.counts.z; ++n) {
+        float cosine = dot(normal, sky_suns[n].direction.xyz);
+        if (cosine > kBrdfHorizon)
+            sum += sky_suns[n].light.rgb *
+                   (cosine * visible_share(hidden, sky_suns[n].direction.xyz, cosine));
+    }
+    vec3 irradiance = sky.intensity_sun.x * sum;
     vec3 to_viewer = local_from_world(frame_of(surface), surface.to_viewer);
     add_light(pixel, irradiance * brdf_diffuse(brdf_of(surface), to_viewer) * kInversePi, irradiance);
 }

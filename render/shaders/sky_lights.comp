@@ -33,7 +33,7 @@ void main() {
         if (!brdf_is_above(to_light))
             continue;
         vec3 arriving = sky_directions[n].light.rgb *
-                        (to_light.z * sky.intensity.x * open_share(n, surface));
+                        (to_light.z * sky.intensity_sun.x * open_share(n, surface));
         irradiance += arriving;
         radiance += arriving * brdf_eval(brdf, to_light, to_viewer);
     }

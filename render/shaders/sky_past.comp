@@ -17,5 +17,5 @@ void main() {
     ivec2 size = textureSize(sky_picture, 0);
     vec2 at = latlong_from_direction(sky_direction(surface.normal)) * vec2(size);
     vec3 light = texelFetch(sky_picture, clamp(ivec2(at), ivec2(0), size - 1), 0).rgb;
-    add_light(pixel, sky.intensity.x * light, vec3(0.0));
+    add_light(pixel, sky.intensity_sun.x * light, vec3(0.0));
 }

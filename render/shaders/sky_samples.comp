@@ -4,6 +4,7 @@
 // shifts each pixel's samples; HAS_SHADOWS.
 #include "formats/shared/brdf_weight.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
+#include "formats/shared/suns.glsl.h"
 #include "render/shaders/sky.glsl"
 
 #ifndef LEVEL
@@ -13,36 +14,42 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 5) uniform sampler2DArray sky_maps;
+layout(binding = 8) uniform sampler2DArray sky_maps_with_suns;  // only beside suns
 #ifdef HAS_SHIFT
 layout(binding = 6) uniform sampler2D sky_shift;
 #endif
 
 int map_side() { return textureSize(sky_maps, 0).x; }
 
-vec3 on_level(ParaboloidPoint point, int level) {
+// share: of suns, in maps.
+vec3 texel(ivec3 at, int level, float share) {
+    vec3 value = share < 1.0 ? (1.0 - share) * texelFetch(sky_maps, at, level).rgb : vec3(0.0);
+    return share > 0.0 ? value + share * texelFetch(sky_maps_with_suns, at, level).rgb : value;
+}
+
+vec3 on_level(ParaboloidPoint point, int level, float share) {
     // llvmpipe asks for the size of one level for all pixels that it shades together.
     LinearTaps taps = linear_taps(point.at, map_side() >> level);
     ivec3 low = ivec3(taps.low, point.side), high = ivec3(taps.high, point.side);
-    return mix(mix(texelFetch(sky_maps, low, level).rgb,
-                   texelFetch(sky_maps, ivec3(high.x, low.y, low.z), level).rgb, taps.part.x),
-               mix(texelFetch(sky_maps, ivec3(low.x, high.y, low.z), level).rgb,
-                   texelFetch(sky_maps, high, level).rgb, taps.part.x),
+    return mix(mix(texel(low, level, share), texel(ivec3(high.x, low.y, low.z), level, share), taps.part.x),
+               mix(texel(ivec3(low.x, high.y, low.z), level, share), texel(high, level, share), taps.part.x),
                taps.part.y);
 }
 
-vec3 filtered(vec3 direction, float level) {
+vec3 filtered(vec3 direction, float level, float share) {
     ParaboloidPoint point = paraboloid_from_direction(direction);
     float clamped = clamp(level, 0.0, float(textureQueryLevels(sky_maps) - 1));
     int finer = int(clamped);
     float part = clamped - float(finer);
-    vec3 value = on_level(point, finer);
-    return part > 0.0 ? mix(value, on_level(point, finer + 1), part) : value;
+    vec3 value = on_level(point, finer, share);
+    return part > 0.0 ? mix(value, on_level(point, finer + 1, share), part) : value;
 }
 
 struct Lobe {
     Brdf brdf;
     SurfaceFrame frame;
     vec3 to_viewer;  // local
+    float share;     // of suns, in maps
 };
 
 vec3 in_environment(Lobe lobe, vec3 local) {
@@ -62,24 +69,26 @@ vec3 filtered_light(Lobe lobe, vec2 xi, vec3 direction, float density) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < lookups.taps; ++k)
         sum += filtered(direction_from_paraboloid(middle.side, lookup_at(middle.at, lookups, k)),
-                        lookups.level);
+                        lookups.level, lobe.share);
     return sum / float(lookups.taps);
 #else
     float texels = texels_per_sample(float(map_side() * map_side()), count, density,
                                      paraboloid_sr_per_area(direction));
-    return filtered(direction, filter_level(LEVEL, texels));
+    return filtered(direction, filter_level(LEVEL, texels), lobe.share);
 #endif
 }
 
-float visible_share(Hidden hidden, vec3 direction, float cosine) {
-#ifdef HAS_SHADOWS
-    float value = 0.0;
-    for (int k = 0; k < kHarmonics; ++k)
-        value += hidden.value[k] * harmonic(k, direction);
-    return 1.0 - clamp(value / max(cosine, kLeastHiddenCosine), 0.0, 1.0);
-#else
-    return 1.0;
-#endif
+// Of the suns, as points.
+vec3 sun_light(Lobe lobe, Hidden hidden) {
+    vec3 sum = vec3(0.0);
+    for (int n = 0; n < sky.counts.z; ++n) {
+        vec3 direction = sky_suns[n].direction.xyz;
+        vec3 to_light = local_from_world(lobe.frame, world_from_sky(direction));
+        if (brdf_is_above(to_light))
+            sum += sky_suns[n].light.rgb * (to_light.z * visible_share(hidden, direction, to_light.z)) *
+                   brdf_lobe(lobe.brdf, to_light, lobe.to_viewer);
+    }
+    return sum;
 }
 
 vec2 shift_of(ivec2 pixel) {
@@ -103,6 +112,9 @@ void main() {
         return;
     lobe.frame = frame_of(surface);
     lobe.to_viewer = local_from_world(lobe.frame, surface.to_viewer);
+    lobe.share = sky.counts.z == 0 ? 0.0
+                                   : suns_in_maps(brdf_lobe_width_rad(lobe.brdf, lobe.to_viewer),
+                                                  sky.intensity_sun.y);
     Hidden hidden = hidden_at(pixel);
     vec2 shift = shift_of(pixel);
     uint count = uint(sky.counts.x);
@@ -118,5 +130,8 @@ void main() {
                brdf_lobe_weight(lobe.brdf, to_light, lobe.to_viewer) *
                visible_share(hidden, direction, to_light.z);
     }
-    add_light(pixel, sum * (sky.intensity.x / float(count)), vec3(0.0));
+    vec3 light = sum / float(count);
+    if (lobe.share < 1.0)
+        light += (1.0 - lobe.share) * sun_light(lobe, hidden);
+    add_light(pixel, sky.intensity_sun.x * light, vec3(0.0));
 }

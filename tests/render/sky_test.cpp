@@ -77,6 +77,7 @@ TEST(Sky, FilteredSamplesAreNearTheReference) {
         RenderOptions options = small();
         options.environment.samples = samples;
         options.environment.level = level;
+        options.environment.suns = 0;
         return test::rms_of_mean(render_cpu(scene, options).picture, truth);
     };
     const Scene soft = under(test::soft_sky(), metal(shared::kBrdfPhong, 30.0F, {}));
