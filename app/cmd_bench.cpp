@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/calibration.h"
+#include "app/bench/environment.h"
 #include "app/bench/files.h"
 #include "app/bench/fit.h"
 #include "app/bench/papers.h"
@@ -26,11 +27,11 @@
 namespace nearfield::app {
 namespace {
 
-enum class What { Accuracy, Shadows, Papers, Calibration, Fit };
+enum class What { Accuracy, Shadows, Papers, Calibration, Fit, Environment };
 
 constexpr const char *kOfAccuracy = "bench accuracy", *kOfShadows = "bench shadows",
                      *kOfPapers = "bench papers", *kOfCalibration = "bench calibration",
-                     *kOfFit = "bench fit";
+                     *kOfFit = "bench fit", *kOfEnvironment = "bench environment";
 
 struct BenchCommand {
     What what = What::Accuracy;
@@ -41,6 +42,7 @@ struct BenchCommand {
     bench::PapersOptions papers;
     bench::CalibrationSweepOptions calibration;
     bool quick = false;
+    std::string mesh;
 };
 
 LightField read_lamp(const BenchCommand& command) {
@@ -180,6 +182,26 @@ void run_fit(const BenchCommand& command, const std::string& command_line) {
                     findings.time_s));
 }
 
+void run_environment(const BenchCommand& command, const std::string& command_line) {
+    const std::filesystem::path folder(command.page);
+    bench::make_folder(folder.string());
+    ProgressLine progress(kOfEnvironment);
+    const bench::EnvironmentFindings findings =
+        bench::run_environment_sweeps({folder.string(), command.input, command.mesh, command.quick},
+                                      [&](double fraction) { progress.update(fraction); });
+    progress.finish();
+    const bench::EnvironmentSetup setup{command_line, machine(), command.quick};
+    write_file(bench::as_csv(findings), (folder / "environment.csv").string());
+    const std::string page = (folder / "environment.html").string();
+    bench::write_page(findings, setup, page);
+    if (command.json)
+        print(bench::as_json(findings, setup));
+    for (const std::string& sentence : bench::conclusions(findings))
+        say(sentence + "\n");
+    say(fmt::format("{}: {} settings measured in {:.0f} s\n", page, findings.rows.size(),
+                    findings.time_s));
+}
+
 // What only others of them take.
 void refuse_foreign_options(const CLI::App& command, const std::string& own) {
     for (const CLI::Option* option : command.get_options())
@@ -286,6 +308,8 @@ Bench of_what(What what) {
             return {kOfCalibration, run_calibration};
         case What::Fit:
             return {kOfFit, run_fit};
+        case What::Environment:
+            return {kOfEnvironment, run_environment};
         case What::Accuracy:
             break;
     }
@@ -298,32 +322,38 @@ void add_bench(CLI::App& app) {
     auto c = std::make_shared<BenchCommand>();
     CLI::App* sub = add_command(
         app, "bench",
-        "Measures what accuracy costs: samplers and their knobs, shadow maps, calibration, fit",
+        "Measures what accuracy costs: samplers and their knobs, shadow maps, calibration, fit, "
+        "environments",
         {"nearfield bench accuracy -o accuracy.html --csv accuracy.csv",
          "nearfield bench accuracy headlight.luminaire.exr --receivers points.csv -o accuracy.html",
          "nearfield bench accuracy --samplers sum,pdis --k 16,63,1000 -o pdis.html",
          "nearfield bench shadows scene.gltf -o shadows.html", "nearfield bench papers -o papers",
-         "nearfield bench calibration -o calibration", "nearfield bench fit -o fit"});
+         "nearfield bench calibration -o calibration", "nearfield bench fit -o fit",
+         "nearfield bench environment hall.hdr -o environment"});
     add_choice(
         *sub, "what", c->what,
         {{"accuracy", What::Accuracy},
          {"shadows", What::Shadows},
          {"papers", What::Papers},
          {"calibration", What::Calibration},
-         {"fit", What::Fit}},
+         {"fit", What::Fit},
+         {"environment", What::Environment}},
         "accuracy: of samplers and sums, on a lamp; shadows: of shadow maps, on a scene; "
         "papers: a published paper's figures again, on lamps of its sizes; calibration: errors "
         "of a calibrated bench against noise, boards, bends, tilts, lens models; fit: errors of a "
         "measured light field against positions, exposures, filter, basis, planes, smoothness, "
-        "and the solver beside general ones")
+        "and the solver beside general ones; environment: filtered light and shadows of what is "
+        "around, "
+        "beside a paper's text")
         ->required();
     sub->add_option(
            "input", c->input,
            "accuracy: luminaire or light field, .exr, by default the reference lamp (nearfield "
-           "simulate reference); shadows: scene, .gltf or .glb")
+           "simulate reference); shadows: scene, .gltf or .glb; "
+           "environment: latitude-longitude picture, .hdr or .exr, by default a hall by formula")
         ->type_name("FILE");
     sub->add_option("-o,--output", c->page,
-                    "page to write, .html; papers, calibration, fit: folder")
+                    "page to write, .html; papers, calibration, fit, environment: folder")
         ->required()
         ->type_name("FILE");
     sub->add_flag("--json", c->json, "all measurements as JSON on stdout");
@@ -340,13 +370,18 @@ void add_bench(CLI::App& app) {
     sub->option_defaults()->group(fmt::format("{}, {}, {}", kOfAccuracy, kOfCalibration, kOfFit));
     add_number(*sub, "--seed", c->options.seed, std::uint32_t{0},
                std::numeric_limits<std::uint32_t>::max(), "N", "of all random numbers");
-    sub->option_defaults()->group(fmt::format("{}, {}, {}", kOfPapers, kOfCalibration, kOfFit));
+    sub->option_defaults()->group(
+        fmt::format("{}, {}, {}, {}", kOfPapers, kOfCalibration, kOfFit, kOfEnvironment));
     sub->add_flag("--quick", c->quick,
                   "small lamps and frames, few calibrations and texels: seconds, no conclusions");
     sub->option_defaults()->group(kOfCalibration);
     add_number(*sub, "--trials", c->calibration.trials, 2, 100000, "N",
                "calibrations of each setting, 20 and of quick runs 3 by default")
         ->default_str("");
+    sub->option_defaults()->group(kOfEnvironment);
+    sub->add_option("--mesh", c->mesh,
+                    "scene whose first mesh is the uneven surface; by default a knobby ball")
+        ->type_name("FILE");
     sub->option_defaults()->group(kOfPapers);
     add_number(*sub, "--frame-px", c->papers.frame_px, 16, 4096, "PX",
                "width of the samplers' frames, 240 and of quick runs 32 by default; others follow")

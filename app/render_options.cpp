@@ -91,7 +91,7 @@ void add_environment_options(CLI::App& sub, RenderCommand& c) {
                  "several lookups along what a filtered sample stands for; slower");
     sub.add_flag("--environment-shift", around.is_shifted,
                  "other filtered samples for each pixel: noise in place of structured error");
-    add_number(sub, "--environment-directions", around.directions, 0, 4096, "N",
+    add_number(sub, "--environment-directions", around.directions, 0, 1 << 14, "N",
                "in which filtered light asks whether the sky is visible, 0: in none; of lights: "
                "how many");
     add_number(sub, "--environment-suns", around.suns, 0, 4096, "N",

@@ -81,7 +81,7 @@ void check(const RenderOptions& options) {
     if (options.sigma_measured && options.device == Device::Gl)
         refuse("sigma measured", "device cpu", "gl");
     check_range("environment samples", options.environment.samples, 1, kMostSamples);
-    check_range("environment directions", options.environment.directions, 0, 4096);
+    check_range("environment directions", options.environment.directions, 0, 1 << 14);
     check_range("environment suns", options.environment.suns, 0, 4096);
     check_range("environment map's side", options.environment.map_px, 1, kMaxExtentPx);
     check_range("threads", options.threads, 0, 4096, " (all)");

@@ -22,7 +22,7 @@ struct VisibilityFit {
 /// Least squares with a ridge, in double: 16 values barely determine 16 coefficients, and where no
 /// direction was drawn the function is taken as 0.
 ///
-/// count  1 ... 4096
+/// count  1 ... 16384
 /// Cost   O(16^2 count)
 VisibilityFit make_visibility_fit(const LatLong& picture, const SkyTable& table, int count);
 
