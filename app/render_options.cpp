@@ -85,6 +85,7 @@ void add_environment_options(CLI::App& sub, RenderCommand& c) {
     add_choice(sub, "--environment-level", around.level,
                {{"fis", render::FilterLevel::Fis},
                 {"gems", render::FilterLevel::Gems},
+                {"mfis", render::FilterLevel::Mfis},
                 {"none", render::FilterLevel::None}},
                "how far they are blurred: as a paper does, or not at all, to compare with");
     sub.add_flag("--environment-anisotropic", around.is_anisotropic,

@@ -43,6 +43,8 @@ const char* name_of(FilterLevel level) {
             return "gems";
         case FilterLevel::None:
             return "none";
+        case FilterLevel::Mfis:
+            return "mfis";
         default:
             return "fis";
     }

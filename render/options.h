@@ -40,7 +40,7 @@ enum class EnvironmentMethod {
 };
 
 /// How far filtered samples are blurred (formats/shared/filtered_samples.glsl.h).
-enum class FilterLevel { Fis, Gems, None };
+enum class FilterLevel { Fis, Gems, None, Mfis };
 
 const char* name_of(EnvironmentMethod method);
 const char* name_of(FilterLevel level);

@@ -60,6 +60,8 @@ std::uint32_t word_of(FilterLevel level) {
             return shared::kLevelGems;
         case FilterLevel::None:
             return shared::kLevelNone;
+        case FilterLevel::Mfis:
+            return shared::kLevelMfis;
         default:
             return shared::kLevelFis;
     }

@@ -157,6 +157,8 @@ void sweep_surfaces(Sweep& sweep, const Mesh& mesh, const std::string& study) {
             measure(sweep, subject, "fis", n, filtered(n, 0));
             measure(sweep, subject, "fis, suns apart", n, filtered(n, 32));
             measure(sweep, subject, "gems", n, filtered(n, 0, FilterLevel::Gems));
+            measure(sweep, subject, "mfis", n, filtered(n, 0, FilterLevel::Mfis));
+            measure(sweep, subject, "mfis, suns apart", n, filtered(n, 32, FilterLevel::Mfis));
             measure(sweep, subject, "unfiltered", n, filtered(n, 0, FilterLevel::None));
             EnvironmentOptions random = filtered(n, 0, FilterLevel::None);
             random.is_shifted = true;
@@ -176,6 +178,7 @@ void sweep_brushed(Sweep& sweep) {
             EnvironmentOptions along = filtered(n, 0);
             along.is_anisotropic = true;
             measure(sweep, subject, "fis", n, filtered(n, 0));
+            measure(sweep, subject, "mfis", n, filtered(n, 0, FilterLevel::Mfis));
             measure(sweep, subject, "along the longer axis", n, along);
             measure(sweep, subject, "unfiltered", n, filtered(n, 0, FilterLevel::None));
         }
@@ -236,11 +239,11 @@ EnvironmentFindings run_environment_sweeps(const EnvironmentSweepOptions& option
     const double start_s = now_s();
     EnvironmentFindings findings;
     double done = 0.0;
-    const double steps = options.quick ? 111.0 : 372.0;  // about, for the progress line
+    const double steps = options.quick ? 70.0 : 460.0;  // about, for the progress line
     Sweep sweep{options.picture,
                 {},
                 {},
-                options.quick ? 256 : 4096,
+                options.quick ? 256 : 2048,
                 {},
                 {},
                 options.quick,
@@ -254,7 +257,7 @@ EnvironmentFindings run_environment_sweeps(const EnvironmentSweepOptions& option
     findings.mesh = options.mesh.empty() ? "a knobby ball" : options.mesh;
     sweep.mesh =
         options.mesh.empty() ? make_ball(options.quick ? 32 : 96, 0.08) : read_mesh(options.mesh);
-    findings.frame_px = options.quick ? 24 : 64;
+    findings.frame_px = options.quick ? 24 : 48;
     findings.reference_samples = sweep.reference_samples;
     sweep.options.size_px = glm::ivec2(findings.frame_px);
     sweep.options.effects.shadows = render::Switch::Off;

@@ -82,10 +82,10 @@ std::string of_visibility(const EnvironmentFindings& findings) {
 
 std::vector<std::string> conclusions(const EnvironmentFindings& findings) {
     std::vector<std::string> sentences;
-    for (const char* method : {"fis", "fis, suns apart"})
+    for (const char* method : {"fis", "fis, suns apart", "mfis, suns apart"})
         for (const Metric& metric : kMetrics)
             sentences.push_back(against_lamps(findings, method, metric));
-    for (const char* method : {"fis", "fis, suns apart", "far lamps"})
+    for (const char* method : {"fis", "fis, suns apart", "mfis", "mfis, suns apart", "far lamps"})
         if (const std::string text = at_fifty(findings, method); !text.empty())
             sentences.push_back(text);
     sentences.push_back(of_visibility(findings));

@@ -25,7 +25,9 @@ constexpr StudyText kStudies[] = {
      "few samples and low-frequency BRDFs \"environment map importance sampling provides more "
      "pleasing images\" (sphere under Grace, 2008). How its RMS is defined it does not say.",
      "A ball of Phong's lobe. fis: the paper's; suns apart: small bright parts are summed one by "
-     "one beside N samples, up to 32; gems: one level more, after its own clamp (2007); far lamps: "
+     "one beside N samples, up to 32; gems: one level more, after its own clamp (2007); mfis: "
+     "level by the "
+     "density's mean over what a sample stands for (Tokuyoshi 2016); far lamps: "
      "N directions by luminance. No shadows."},
     {"mesh", "The same on an uneven surface",
      "\"On complex geometry, undersampling appears as blurring and dulling of the highlights. "

@@ -106,6 +106,17 @@ bool is_index(const json& value) {
                static_cast<std::uint64_t>(std::numeric_limits<int>::max());
 }
 
+/// The library leaves out extensions that are no objects.
+void check_extensions(const json& extensions, const std::string& place, const std::string& path) {
+    if (!extensions.is_object())
+        throw Error{kReadingScene, path + ": " + place, "an object",
+                    extensions.dump().substr(0, 40)};
+    for (const auto& [name, extension] : extensions.items())
+        if (!extension.is_object())
+            throw Error{kReadingScene, fmt::format("{}: {}.{}", path, place, name), "an object",
+                        extension.dump().substr(0, 40)};
+}
+
 /// Members whose type the library ignores where it is wrong, so that a typing error would go
 /// unnoticed.
 void check_members(const json& value, const std::string& place, const std::string& path) {
@@ -120,6 +131,8 @@ void check_members(const json& value, const std::string& place, const std::strin
                                   : place.empty()  ? key
                                                    : place + "." + key;
         if (!value.is_array()) {
+            if (key == "extensions")
+                check_extensions(member, inner, path);
             if (key == "extensions" || key == "extras")
                 continue;
             if (indices.count(key) != 0 && !is_index(member))

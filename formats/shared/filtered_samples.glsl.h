@@ -14,6 +14,7 @@ SHARED_BEGIN
 const uint kLevelFis = 0u;
 const uint kLevelGems = 1u;
 const uint kLevelNone = 2u;
+const uint kLevelMfis = 3u;  // texels_of_sample by mean_density.glsl.h
 
 // Area of the filter in samples' shares of [0, 1)^2: found empirically by Krivanek and Colbert for
 // mips made by a box filter.
@@ -38,6 +39,8 @@ GPU_FN float filter_level(uint kind, float texels_of_sample) {
         return 0.5f * log2(max(texels_of_sample, 1.0f)) + 1.0f;
     if (kind == kLevelFis)
         return 0.5f * log2(max(kFisOverlap * texels_of_sample, 1.0f));
+    if (kind == kLevelMfis)
+        return 0.5f * log2(max(texels_of_sample, 1.0f));
     return 0.0f;
 }
 

@@ -3,6 +3,7 @@
 
 #include "formats/shared/environment_maps.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
+#include "formats/shared/mean_density.glsl.h"
 #include "render/sky.h"
 
 namespace nearfield::render {
@@ -36,9 +37,14 @@ glm::vec3 filtered_light(const SkyLobe& lobe,
     const glm::vec3 direction = lobe.in_environment(to_light);
     if (options.is_anisotropic)
         return anisotropic(lobe, options.samples, xi, direction);
-    const float texels = shared::texels_per_sample(static_cast<float>(lobe.map.texels()),
-                                                   static_cast<float>(options.samples), density,
-                                                   shared::paraboloid_sr_per_area(direction));
+    const auto count = static_cast<float>(options.samples);
+    const float around = options.level == FilterLevel::Mfis
+                             ? 1.0F / (count * shared::mfis_solid_angle_sr(lobe.brdf, to_light,
+                                                                           lobe.to_viewer, count))
+                             : density;
+    const float texels =
+        shared::texels_per_sample(static_cast<float>(lobe.map.texels()), count, around,
+                                  shared::paraboloid_sr_per_area(direction));
     return environment::filtered(lobe.map, direction,
                                  shared::filter_level(word_of(options.level), texels));
 }

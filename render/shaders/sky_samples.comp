@@ -4,6 +4,7 @@
 // shifts each pixel's samples; HAS_SHADOWS.
 #include "formats/shared/brdf_weight.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
+#include "formats/shared/mean_density.glsl.h"
 #include "formats/shared/suns.glsl.h"
 #include "render/shaders/sky.glsl"
 
@@ -56,7 +57,7 @@ vec3 in_environment(Lobe lobe, vec3 local) {
     return sky_direction(world_from_local(lobe.frame, local));
 }
 
-vec3 filtered_light(Lobe lobe, vec2 xi, vec3 direction, float density) {
+vec3 filtered_light(Lobe lobe, vec2 xi, vec3 to_light, vec3 direction, float density) {
     float count = float(sky.counts.x);
 #ifdef IS_ANISOTROPIC
     ParaboloidPoint middle = paraboloid_from_direction(direction);
@@ -72,7 +73,11 @@ vec3 filtered_light(Lobe lobe, vec2 xi, vec3 direction, float density) {
                         lookups.level, lobe.share);
     return sum / float(lookups.taps);
 #else
-    float texels = texels_per_sample(float(map_side() * map_side()), count, density,
+    // The density whose mean a sample stands for.
+    float around = LEVEL == kLevelMfis ? 1.0 / (count * mfis_solid_angle_sr(lobe.brdf, to_light,
+                                                                            lobe.to_viewer, count))
+                                       : density;
+    float texels = texels_per_sample(float(map_side() * map_side()), count, around,
                                      paraboloid_sr_per_area(direction));
     return filtered(direction, filter_level(LEVEL, texels), lobe.share);
 #endif
@@ -126,7 +131,7 @@ void main() {
         if (!(density > 0.0))
             continue;
         vec3 direction = in_environment(lobe, to_light);
-        sum += filtered_light(lobe, xi, direction, density) *
+        sum += filtered_light(lobe, xi, to_light, direction, density) *
                brdf_lobe_weight(lobe.brdf, to_light, lobe.to_viewer) *
                visible_share(hidden, direction, to_light.z);
     }

@@ -85,6 +85,8 @@ TEST(GlSky, EveryOptionIsTheCpus) {
     };
     EXPECT_GE(share({.level = FilterLevel::Gems}), kAlike);
     EXPECT_GE(share({.level = FilterLevel::None}), kAlike);
+    EXPECT_GE(share({.level = FilterLevel::Mfis}), kAlike);
+    EXPECT_GE(share({.suns = 0}), kAlike);
     EXPECT_GE(share({.is_anisotropic = true}), kAlike);
     EXPECT_GE(share({.is_shifted = true}), kAlike);
     EXPECT_GE(share({.method = EnvironmentMethod::Lights, .directions = 32}), kAlike);
