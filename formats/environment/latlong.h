@@ -36,6 +36,10 @@ glm::vec3 radiance(const LatLong& picture, glm::vec3 direction);
 /// Solid angle of a pixel of row y, exactly: a zone's share.
 double pixel_sr(const LatLong& picture, int y);
 
+/// Of the mean: what is brighter is looked at pixel by pixel, since points in a texel and few
+/// samples meet it by chance.
+constexpr float kBright = 8.0F;
+
 /// Over all directions.
 float mean_luminance(const LatLong& picture);
 

@@ -18,7 +18,6 @@ namespace {
 // Points in a texel, a side. They hit a pixel as small as a texel by chance: its light would be off
 // by up to 10 %. So what is brighter than kBright times the mean comes on top, pixel by pixel.
 constexpr int kPoints = 4;
-constexpr float kBright = 8.0F;
 // Parts of a bright pixel, a side, whose light goes to the texel that each lies in.
 constexpr int kParts = 16;
 

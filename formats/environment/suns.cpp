@@ -9,7 +9,6 @@
 namespace nearfield::environment {
 namespace {
 
-constexpr float kBright = 8.0F;        // of the mean
 constexpr double kRadius_rad = 0.026;  // 1.5 degrees
 
 struct BrightPixel {
