@@ -282,7 +282,8 @@ TEST(SkyScene, SurvivesAFileAndRefusesNonsense) {
     EXPECT_EQ(complaint(R"({"uri":"a.hdr"})"), "none");
     EXPECT_THAT(complaint("{}"), HasSubstr(".uri"));
     EXPECT_THAT(complaint(R"({"uri":"../a.hdr","colour":1})"), HasSubstr("colour"));
-    EXPECT_THAT(complaint("3"), HasSubstr("NEARFIELD_environment: expected an object, got 3"));
+    EXPECT_THAT(complaint("3"),
+                HasSubstr(".NEARFIELD_environment: cannot read scene: expected an object, got 3"));
     EXPECT_THAT(complaint(R"({"uri":"/a.hdr"})"), HasSubstr("relative to the scene"));
     EXPECT_THAT(complaint(R"({"uri":"a.hdr","intensity":-1})"), HasSubstr(".intensity"));
     EXPECT_THAT(complaint(R"({"uri":"a.hdr","rotation":[0,0,1]})"), HasSubstr(".rotation"));
