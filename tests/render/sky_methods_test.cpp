@@ -122,10 +122,10 @@ double light_of(const Picture& picture) {
     return sum;
 }
 
-// Proves that the reference neither loses nor bursts where a sun is one pixel of 512 x 256: on a
-// matt floor it is albedo/pi times radiance, solid angle and cosine, within its own noise. A
-// direction drawn in the sun, and taken for its dark neighbor's by rounding, would add 20 % and
-// more.
+// Proves the reference against closed form where a sun is one pixel of 512 x 256: on a matt floor
+// it is albedo/pi times radiance, solid angle and cosine. Not that a direction drawn in the sun
+// cannot be taken for its dark neighbor's by rounding: glossy floors show that
+// (SunsKeepTheirLight).
 TEST(SkyMethods, ReferenceHoldsSmallSuns) {
     const environment::LatLong picture = test::lone_sun(256, {16, 80}, 1e6F);
     const Scene scene = under(test::write_sky(picture, "small_sun.exr"));
