@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "acquire/serial_line.h"
 
+#include "formats/files/error.h"
 #include "formats/files/provenance.h"
 
 #include <fcntl.h>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace nearfield::acquire {
@@ -31,9 +31,9 @@ SerialLine::SerialLine(std::string path) : path_(std::move(path)) {
     file_ = open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file_ < 0) {
         if (errno == ENOENT || errno == ENXIO || errno == ENODEV || errno == EIO)
-            lost(std::strerror(errno));
+            lost(system_error());
         throw Error{"cannot open serial line", path_, "one that may be opened (docs/bench.md)",
-                    std::strerror(errno)};
+                    system_error()};
     }
     termios settings{};
     const bool is_terminal = tcgetattr(file_, &settings) == 0;
@@ -42,7 +42,7 @@ SerialLine::SerialLine(std::string path) : path_(std::move(path)) {
     settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS | HUPCL);
     cfsetspeed(&settings, B115200);
     if (!is_terminal || tcsetattr(file_, TCSANOW, &settings) != 0) {
-        const std::string why = std::strerror(errno);
+        const std::string why = system_error();
         close(file_);
         throw Error{"cannot open serial line", path_, "a terminal device", why};
     }
@@ -71,7 +71,7 @@ void SerialLine::write(const std::string& bytes) {
             continue;
         }
         if (written < 0 && errno != EAGAIN && errno != EINTR)
-            lost(std::strerror(errno));
+            lost(system_error());
         pollfd ready{file_, POLLOUT, 0};
         if (poll(&ready, 1, kWritePatience_ms) == 0)
             lost("nothing can be written");
@@ -92,7 +92,7 @@ bool SerialLine::read_some(double patience_s) {
     }
     if (got < 0 && (errno == EAGAIN || errno == EINTR))
         return false;
-    lost(got == 0 ? "hung up" : std::strerror(errno));
+    lost(got == 0 ? "hung up" : system_error());
 }
 
 std::optional<std::string> SerialLine::read_line(double patience_s) {

@@ -2,6 +2,7 @@
 #include "acquire/v4l2_device.h"
 
 #include "acquire/settings.h"
+#include "formats/files/error.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -53,7 +54,7 @@ std::string v4l2_control_name(const std::string& label) {
 V4l2Device::V4l2Device(std::string path) : path_(std::move(path)) {
     file_ = open(path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (file_ < 0) {
-        const std::string why = std::strerror(errno);
+        const std::string why = system_error();
         if (is_gone(errno))
             throw DeviceLost{"cannot open camera", path_, "a device", why};
         throw Error{"cannot open camera", path_, "a device that may be opened (docs/bench.md)",
@@ -101,7 +102,7 @@ void V4l2Device::require(unsigned long request, void* argument, const std::strin
 }
 
 void V4l2Device::fail(const std::string& what) const {
-    const std::string why = std::strerror(errno);
+    const std::string why = system_error();
     if (is_gone(errno))
         throw DeviceLost{"cannot " + what, path_, "the device to answer", why};
     throw Error{"cannot " + what, path_, "", why};

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <thread>
 #include <utility>
 
@@ -40,7 +39,7 @@ void V4l2Device::start(unsigned buffers) {
         void* memory = mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, file_,
                             buffer.m.offset);
         if (memory == MAP_FAILED)
-            throw Error{"cannot map a buffer", path_, "", std::strerror(errno)};
+            throw Error{"cannot map a buffer", path_, "", system_error()};
         mapped_.emplace_back(static_cast<unsigned char*>(memory), buffer.length);
     }
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -72,7 +71,7 @@ std::optional<V4l2Buffer> V4l2Device::dequeue(double patience_s) {
         const double left_s = end_s - now_s();
         pollfd ready{file_, POLLIN, 0};
         if (poll(&ready, 1, std::max(0, static_cast<int>(left_s * 1000))) < 0 && errno != EINTR)
-            throw Error{"cannot wait for a frame", path_, "", std::strerror(errno)};
+            throw Error{"cannot wait for a frame", path_, "", system_error()};
         auto buffer = about_buffers<v4l2_buffer>();
         if (call(VIDIOC_DQBUF, &buffer) == 0) {
             const bool is_monotonic =

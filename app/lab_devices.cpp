@@ -59,7 +59,8 @@ pid_t start(std::vector<std::string> command) {
     const int failure = posix_spawnp(&child, command.front().c_str(), nullptr, nullptr,
                                      pointers_to(command).data(), pointers_to(variables).data());
     if (failure != 0)
-        throw Error{"cannot run command", command.front(), "a program", std::strerror(failure)};
+        throw Error{"cannot run command", command.front(), "a program",
+                    std::generic_category().message(failure)};
     return child;
 }
 

@@ -82,12 +82,13 @@ std::pair<fit::TileRange, fit::TileInput> bright_rows(const fit::TileInput& tile
     for (std::size_t k = 0; k < tile.value.size() / texels; ++k) {
         const auto begin =
             static_cast<std::ptrdiff_t>(k * texels + static_cast<std::size_t>(first) * width);
-        const auto end = begin + rows * planes.texels.x;
+        const auto end =
+            begin + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(rows) * width);
         part.value.insert(part.value.end(), tile.value.begin() + begin, tile.value.begin() + end);
         part.variance.insert(part.variance.end(), tile.variance.begin() + begin,
                              tile.variance.begin() + end);
     }
-    return {{first, rows}, std::move(part)};
+    return std::pair(fit::TileRange{first, rows}, std::move(part));
 }
 
 double chosen_lambda(const fit::Design& design,

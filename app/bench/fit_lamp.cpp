@@ -65,6 +65,7 @@ LampLight lamp_light(const sample_data::Headlight& headlight,
     light.light_lx.resize(nodes * light.planes.texel_count());
     const glm::dvec2 step_m = light.planes.texel_m() / static_cast<double>(kPoints);
     std::vector<double> s_x_m;
+    s_x_m.reserve(static_cast<std::size_t>(kPoints) * width);
     for (int p = 0; p < kPoints * texels.x; ++p)
         s_x_m.push_back(light.planes.s_min_m.x + (p + 0.5) * step_m.x);
     tbb::parallel_for(0, texels.y, [&](int j) {

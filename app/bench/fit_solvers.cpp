@@ -60,41 +60,48 @@ fit::Optics filter_optics(const Slab& planes, double error_m) {
     return optics;
 }
 
-// Measurements with photon noise; the brightest datum has 1e6 electrons.
-fit::TileInput measured(const LampToFit& lamp, const fit::Design& design) {
+// All channels of one texel with photon noise; the brightest datum has 1e6 electrons.
+void measure_texel(const fit::TexelDesign& texel,
+                   const std::vector<double>& truth,
+                   const fit::TileLayout& layout,
+                   std::size_t row,
+                   std::size_t i,
+                   fit::TileInput& input) {
     constexpr double kBrightest = 1e-4;  // of the lamp's measurements
     constexpr double kElectrons = 1e6, kDark = 1e-9;
-    const auto width = static_cast<std::size_t>(lamp.planes.texels.x);
-    const auto count = static_cast<std::size_t>(design.measurement_count);
-    const auto functions = static_cast<std::size_t>(design.basis_count());
+    const fit::NoiseKey key = fit::noise_key(1, 0, 0, row * layout.width + i);
+    for (std::size_t k = 0; k < layout.measurements; ++k) {
+        const double light = predicted(texel, static_cast<int>(k), truth);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double variance =
+                kBrightest * (kChannel[c] * light / kElectrons + kDark * kBrightest);
+            const double noise =
+                fit::normal_number(key, static_cast<std::uint32_t>(c * layout.measurements + k));
+            const std::size_t to = layout.at(c, k, layout.measurements, row, i);
+            input.value[to] = static_cast<float>(kChannel[c] * light + std::sqrt(variance) * noise);
+            input.variance[to] = static_cast<float>(variance);
+        }
+    }
+}
+
+fit::TileInput measured(const LampToFit& lamp, const fit::Design& design) {
+    const fit::TileLayout layout =
+        fit::tile_layout(design, static_cast<int>(kChannels), {0, lamp.planes.texels.y});
     fit::TileInput input;
-    input.value.resize(kChannels * count * width * width);
+    input.value.resize(kChannels * layout.measurements * layout.rows * layout.width);
     input.variance.resize(input.value.size());
-    tbb::parallel_for(std::size_t{0}, width, [&](std::size_t j) {
+    tbb::parallel_for(std::size_t{0}, layout.rows, [&](std::size_t row) {
         fit::TexelDesign texel;
-        std::vector<double> truth(functions);
-        for (std::size_t i = 0; i < width; ++i) {
+        std::vector<double> truth(layout.functions);
+        for (std::size_t i = 0; i < layout.width; ++i) {
             if (i == 0 || design.is_varying())
-                fill_texel_design(design, static_cast<int>(i), static_cast<int>(j), texel);
-            const glm::ivec2 at = glm::ivec2(i, j) * lamp.own / lamp.planes.texels;
-            for (std::size_t m = 0; m < functions; ++m)
+                fill_texel_design(design, static_cast<int>(i), static_cast<int>(row), texel);
+            const glm::ivec2 at = glm::ivec2(i, row) * lamp.own / lamp.planes.texels;
+            for (std::size_t m = 0; m < layout.functions; ++m)
                 truth[m] =
                     double(lamp.coeffs[m * static_cast<std::size_t>(lamp.own.x * lamp.own.y) +
                                        static_cast<std::size_t>(at.y * lamp.own.x + at.x)]);
-            const fit::NoiseKey key = fit::noise_key(1, 0, 0, j * width + i);
-            for (std::size_t k = 0; k < count; ++k) {
-                const double light = predicted(texel, static_cast<int>(k), truth);
-                for (std::size_t c = 0; c < kChannels; ++c) {
-                    const double variance =
-                        kBrightest * (kChannel[c] * light / kElectrons + kDark * kBrightest);
-                    const double noise =
-                        fit::normal_number(key, static_cast<std::uint32_t>(c * count + k));
-                    const std::size_t to = ((c * count + k) * width + j) * width + i;
-                    input.value[to] =
-                        static_cast<float>(kChannel[c] * light + std::sqrt(variance) * noise);
-                    input.variance[to] = static_cast<float>(variance);
-                }
-            }
+            measure_texel(texel, truth, layout, row, i, input);
         }
     });
     return input;
