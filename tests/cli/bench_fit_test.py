@@ -27,7 +27,8 @@ class BenchFit(ProgramTest):
             self.assertLess(row["kkt_worst"], 1e-9, key)
             self.assertLess(row["noise_rms"], row["basis_rms"], key)  # texels are coarse
             self.assertLess(abs(row["flux_rel"]), 0.6, key)  # of so few texels and coarse nodes
-            self.assertTrue(0.5 <= row["coverage"] <= 1, key)
+            unknown_to_sigma = key in (("exposures", "1"), ("lambda", "0.1"))
+            self.assertTrue((0.5 if unknown_to_sigma else 0.8) <= row["coverage"] <= 1, key)
             self.assertGreater(row["texel_us"], 0, key)
 
         # Sigma is noise alone. What it does not know: how noise adds up that coefficients >= 0 cut off (one exposure), and

@@ -57,6 +57,9 @@ TEST(TexelPlan, TheLitPartIsFound) {
             light[static_cast<std::size_t>(y * 48 + x)] = 1.0F;
     light[0] = std::nanf("");
     light[48 * 33 + 5] = light[48 * 2 + 45] = 0.7F;
+    for (int y = 28; y < 32; ++y)
+        for (int x = 40; x < 44; ++x)
+            light[static_cast<std::size_t>(y * 48 + x)] = 0.7F;
     const Extent extent = lit_extent(rig, visible_extent(rig), light, 0.01);
     // Edges of the outermost lit pixels; rows count from the top.
     const glm::dvec2 low(0.004 * (8 - 24), 0.004 * (18 - 20));
