@@ -208,6 +208,24 @@ TEST(SolveTexel, IsTheSameInOtherUnitsOfLight) {
         EXPECT_NEAR(b.coeffs[m] * 1e-7, a.coeffs[m], 1e-9 * (1.0 + a.coeffs[m]));
 }
 
+// Proves that sigma is of the noise alone: where a quarter of every variance is noise, sigmas of
+// free coefficients are half as large, and the estimate is the same.
+TEST(SolveTexel, SigmaIsOfTheNoiseAlone) {
+    const TexelDesign texel = texel_of(test_planes(), 0.001);
+    const Penalty penalty = difference_penalty({11, 9}, 2);
+    const Data data = lamp_data(texel, 3, 0.1);
+    const std::vector<double> quarter(data.b.size(), 0.25);
+    Workspace work;
+    TexelFit all, part;
+    solve_texel(texel, penalty, data.b, data.weight, {1e-3, 2, true}, work, all);
+    solve_texel(texel, penalty, data.b, data.weight, {1e-3, 2, true}, work, part, quarter);
+    EXPECT_EQ(all.coeffs, part.coeffs);
+    for (std::size_t m = 0; m < all.coeffs.size(); ++m)
+        if (all.is_free[m] != 0) {
+            EXPECT_NEAR(part.sigma[m] / all.sigma[m], 0.5, 1e-9) << m;
+        }
+}
+
 TEST(SolveTexel, AnswersTexelsThatNothingSees) {
     const TexelDesign texel = texel_of(test_planes(), 0.001);
     const std::vector<double> none(99, 0.0);
