@@ -18,7 +18,7 @@ ALLOWED = {
     "formats/photos": ["formats/files", "formats/capture"],
     "formats/model": ["formats/files", "formats/shared"],
     "formats/rig": ["formats/files"],
-    "formats/photometry": ["formats/files"],
+    "formats/photometry": ["formats/files", "formats/model"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],

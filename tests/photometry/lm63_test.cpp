@@ -214,6 +214,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"tilt", [](F& f) { f.tilt = "TILT=../x"; }, 4, "same folder", "../x"},
         Refusal{"lamp to luminaire", [](F& f) { f.tilt = "TILT=INCLUDE\n4\n"; }, 5, "1 ... 3", "4"},
         Refusal{"number of lamps", [](F& f) { f.lamps = "1.5 1"; }, 5, "whole", "1.5"},
+        Refusal{"number of lamps", [](F& f) { f.lamps = "0 1"; }, 5, "1 ...", "0"},
         Refusal{"lumens", [](F& f) { f.lamps = "1 -2"; }, 5, "-1", "-2"},
         Refusal{"multiplier", [](F& f) { f.multiplier = "0"; }, 5, "> 0", "0"},
         Refusal{"photometric type", [](F& f) { f.type = "4"; }, 5, "1 ... 3", "4"},
