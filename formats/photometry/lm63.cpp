@@ -114,7 +114,7 @@ Opening read_opening(NumberReader& numbers, int year, double m_per_unit) {
     if (!opening)
         throw Error{
             "luminous opening of photometric file", numbers.where(),
-            fmt::format("a combination of signs that the edition of {} has", year),
+            "a combination of signs that an edition has",
             fmt::format("width {} m, length {} m, height {} m", width_m, length_m, height_m)};
     return *opening;
 }

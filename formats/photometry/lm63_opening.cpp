@@ -28,49 +28,47 @@ constexpr std::array<SignRule, 8> kRectangles = {{
     {"00+", Shape::Rectangle},
 }};
 
-// 1986 and 1991: a negative width is a diameter, or across an ellipse along the length.
-constexpr std::array<SignRule, 4> kRounds1986 = {{
+// What one edition or another says and none contradicts: files mix them.
+constexpr std::array<SignRule, 10> kRounds = {{
     {"-00", Shape::Ellipse},
     {"-0+", Shape::Ellipse},
-    {"-+0", Shape::Ellipse},
-    {"-++", Shape::Ellipsoid},
-}};
-
-constexpr std::array<SignRule, 11> kRounds1995 = {{
-    {"-00", Shape::Ellipse},
-    {"-0+", Shape::Ellipse},
-    {"-0-", Shape::Ellipsoid},  // a sphere
-    {"0+-", Shape::CylinderX},
-    {"+0-", Shape::CylinderY},
     {"-+0", Shape::Ellipse},
     {"+-0", Shape::Ellipse},
-    {"-++", Shape::Ellipse},
     {"+-+", Shape::Ellipse},
-    {"-+-", Shape::Ellipsoid},
-    {"+--", Shape::Ellipsoid},
-}};
-
-// 2002 and 2019, and what files that call themselves so keep of 1995 where it is not ambiguous.
-constexpr std::array<SignRule, 8> kRounds2002 = {{
     {"--0", Shape::Ellipse},
     {"--+", Shape::Ellipse},
     {"---", Shape::Ellipsoid},
-    {"-+-", Shape::CylinderX},
-    {"+--", Shape::CylinderY},
-    {"-0-", Shape::UprightEllipse},
-    {"-00", Shape::Ellipse},
-    {"-0+", Shape::Ellipse},
+    {"0+-", Shape::CylinderX},
+    {"+0-", Shape::CylinderY},
+}};
+
+// What became something else: until 1991, in 1995, from 2002 on.
+struct ChangedRule {
+    const char* signs;
+    Shape until_1991, in_1995, from_2002;
+};
+constexpr std::array<ChangedRule, 4> kChanged = {{
+    {"-++", Shape::Ellipsoid, Shape::Ellipse, Shape::Ellipse},
+    {"-0-", Shape::Ellipsoid, Shape::Ellipsoid, Shape::UprightEllipse},
+    {"-+-", Shape::Ellipsoid, Shape::Ellipsoid, Shape::CylinderX},
+    {"+--", Shape::Ellipsoid, Shape::Ellipsoid, Shape::CylinderY},
 }};
 
 char sign_of(double length) {
     return length < 0 ? '-' : length > 0 ? '+' : '0';
 }
 
-template <std::size_t kCount>
-std::optional<Shape> shape_by(const std::array<SignRule, kCount>& rules, const std::string& signs) {
-    const auto found = std::find_if(rules.begin(), rules.end(),
-                                    [&](const SignRule& rule) { return signs == rule.signs; });
-    return found == rules.end() ? std::nullopt : std::optional(found->shape);
+std::optional<Shape> shape_of(int year, const std::string& signs) {
+    for (const SignRule& rule : kRectangles)
+        if (signs == rule.signs)
+            return rule.shape;
+    for (const SignRule& rule : kRounds)
+        if (signs == rule.signs)
+            return rule.shape;
+    for (const ChangedRule& rule : kChanged)
+        if (signs == rule.signs)
+            return year <= 1991 ? rule.until_1991 : year == 1995 ? rule.in_1995 : rule.from_2002;
+    return std::nullopt;
 }
 
 // Lengths that a sign rule leaves out are those of a circle.
@@ -78,9 +76,6 @@ void complete_circles(Opening& opening) {
     glm::dvec3& size = opening.size_m;
     switch (opening.shape) {
         case Shape::Ellipse:
-            if (size.x == 0)
-                size.x = size.y;
-            break;
         case Shape::Ellipsoid:
             if (size.x == 0)
                 size.x = size.y;
@@ -107,11 +102,7 @@ std::optional<Opening> opening_of_signs(int year,
                                         double length_m,
                                         double height_m) {
     const std::string signs{sign_of(width_m), sign_of(length_m), sign_of(height_m)};
-    std::optional<Shape> shape = shape_by(kRectangles, signs);
-    if (!shape)
-        shape = year <= 1991   ? shape_by(kRounds1986, signs)
-                : year == 1995 ? shape_by(kRounds1995, signs)
-                               : shape_by(kRounds2002, signs);
+    const std::optional<Shape> shape = shape_of(year, signs);
     if (!shape)
         return std::nullopt;
     Opening opening;

@@ -95,6 +95,7 @@ std::string to_lm63(const Photometry& photometry) {
     text += fmt::format("1 1 {}\r\n", lamps.input_w);
     add_numbers(text, photometry.angles_deg);
     std::vector<double> planes;
+    planes.reserve(kept.size());
     for (const std::size_t p : kept)
         planes.push_back(photometry.planes_deg[p]);
     add_numbers(text, planes);

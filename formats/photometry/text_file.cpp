@@ -39,7 +39,9 @@ std::string TextFile::at(std::size_t line) const {
 TextFile read_text(const std::string& path) {
     const std::string bytes = read_file(path);
     TextFile file{path, {}};
-    for (std::size_t at = 0; at < bytes.size();) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    for (std::size_t at = bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+         at < bytes.size();) {
         const std::size_t end = std::min(bytes.find_first_of("\r\n", at), bytes.size());
         file.lines.push_back(trimmed(std::string_view(bytes).substr(at, end - at)));
         at = end + (bytes.compare(end, 2, "\r\n") == 0 ? 2 : 1);
@@ -117,6 +119,7 @@ int NumberReader::next_whole(const std::string& what, int least, int most) {
 
 std::vector<double> NumberReader::next_many(const std::string& what, int count) {
     std::vector<double> numbers;
+    numbers.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k)
         numbers.push_back(next(fmt::format("{} {} of {}", what, k + 1, count)));
     return numbers;

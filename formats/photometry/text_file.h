@@ -23,6 +23,7 @@ struct TextFile {
     std::string at(std::size_t line) const;
 };
 
+/// A byte order mark (UTF-8) is left out; texts are bytes, in whatever encoding the file has.
 /// Throws Error if the file cannot be read, is larger than 64 MiB or holds a zero byte.
 TextFile read_text(const std::string& path);
 

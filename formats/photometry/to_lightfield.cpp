@@ -118,8 +118,8 @@ class TexelMean {
 
     double operator()(glm::dvec2 u_m, int i, int j) const {
         // Gauss-Legendre of 3 nodes on -1/2 ... 1/2.
-        static const std::array<double, 3> kNodes = {-0.5 * std::sqrt(0.6), 0,
-                                                     0.5 * std::sqrt(0.6)};
+        static constexpr double kOuter = 0.3872983346207417;  // sqrt(0.6) / 2
+        static constexpr std::array<double, 3> kNodes = {-kOuter, 0, kOuter};
         static constexpr std::array<double, 3> kWeights = {5.0 / 18, 8.0 / 18, 5.0 / 18};
         const glm::dvec2 center_m = slab_.s_min_m + (glm::dvec2(i, j) + 0.5) * slab_.texel_m();
         double mean = 0;

@@ -86,12 +86,39 @@ TEST(Flux, DownwardsEndsInsideACell) {
     EXPECT_DOUBLE_EQ(photometry::flux_lm(lamp, 180), photometry::flux_lm(lamp));
 }
 
-// Random tables with uneven angles: the sum is the integral of the interpolant, cell by cell, with
-// the solid angle of a cell's points from differences of directions.
+// Solid angle by plane and angle, sr per square degree, from differences of directions.
+double solid_angle_per_deg2(Coordinates coordinates, Angles at) {
+    constexpr double kStep_deg = 1e-3;
+    const auto slope = [&](double plane_deg, double angle_deg) {
+        return (photometry::direction_of(coordinates,
+                                         {at.plane_deg + plane_deg, at.angle_deg + angle_deg}) -
+                photometry::direction_of(coordinates,
+                                         {at.plane_deg - plane_deg, at.angle_deg - angle_deg})) /
+               (2 * kStep_deg);
+    };
+    return glm::length(glm::cross(slope(kStep_deg, 0), slope(0, kStep_deg)));
+}
+
+// The interpolant's integral over one cell of the table by Gauss' rule.
+double cell_lm(const Photometry& lamp, std::size_t p, std::size_t a) {
+    static const support::GaussRule gauss = support::gauss_rule(12);
+    const double plane_step = lamp.planes_deg[p + 1] - lamp.planes_deg[p];
+    const double angle_step = lamp.angles_deg[a + 1] - lamp.angles_deg[a];
+    double sum = 0;
+    for (std::size_t i = 0; i < gauss.node.size(); ++i)
+        for (std::size_t j = 0; j < gauss.node.size(); ++j) {
+            const Angles at{lamp.planes_deg[p] + gauss.node[i] * plane_step,
+                            lamp.angles_deg[a] + gauss.node[j] * angle_step};
+            sum += gauss.weight[i] * gauss.weight[j] * plane_step * angle_step *
+                   solid_angle_per_deg2(lamp.coordinates, at) * photometry::intensity_cd(lamp, at);
+        }
+    return sum;
+}
+
+// Random tables with uneven angles.
 TEST(Flux, IsTheInterpolantsIntegral) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> uniform(0, 1);
-    const support::GaussRule gauss = support::gauss_rule(12);
     for (const Coordinates coordinates : {Coordinates::C, Coordinates::B, Coordinates::A}) {
         Photometry lamp;
         lamp.coordinates = coordinates;
@@ -105,26 +132,7 @@ TEST(Flux, IsTheInterpolantsIntegral) {
         double expected = 0;
         for (std::size_t p = 0; p < 3; ++p)
             for (std::size_t a = 0; a < 3; ++a)
-                for (std::size_t i = 0; i < 12; ++i)
-                    for (std::size_t j = 0; j < 12; ++j) {
-                        const double plane_step = lamp.planes_deg[p + 1] - lamp.planes_deg[p];
-                        const double angle_step = lamp.angles_deg[a + 1] - lamp.angles_deg[a];
-                        const Angles at{lamp.planes_deg[p] + gauss.node[i] * plane_step,
-                                        lamp.angles_deg[a] + gauss.node[j] * angle_step};
-                        constexpr double kStep_deg = 1e-3;
-                        const auto difference = [&](double plane, double angle) {
-                            const auto d = [&](double sign) {
-                                return photometry::direction_of(
-                                    coordinates,
-                                    {at.plane_deg + sign * plane, at.angle_deg + sign * angle});
-                            };
-                            return (d(1) - d(-1)) / (2 * kStep_deg);
-                        };
-                        const double sr_per_deg2 = glm::length(
-                            glm::cross(difference(kStep_deg, 0), difference(0, kStep_deg)));
-                        expected += gauss.weight[i] * gauss.weight[j] * plane_step * angle_step *
-                                    sr_per_deg2 * photometry::intensity_cd(lamp, at);
-                    }
+                expected += cell_lm(lamp, p, a);
         // Floored by the differences: (1e-3 degrees)^2 / 6 = 5e-11.
         EXPECT_NEAR(photometry::flux_lm(lamp), expected, 1e-9 * expected);
     }

@@ -43,6 +43,11 @@ TEST(Lm63, FirstLineTellsTheEdition) {
     }
 }
 
+TEST(Lm63, AByteOrderMarkIsNoLabel) {
+    const std::string text = "\xEF\xBB\xBF" + to_text(small_file());
+    EXPECT_EQ(photometry::read_photometry(test::write_text("mark.ies", text)).format, "LM-63-2002");
+}
+
 TEST(Lm63, LabelsKeepTheirLines) {
     test::Lm63File file = small_file();
     file.labels = {"[TEST]17", "[OTHER] one", "[MORE] two", "no keyword"};
@@ -98,6 +103,8 @@ TEST(Lm63, SignsTellTheOpening) {
              {1995, {-2, 3, 4}, Shape::Ellipse, {3, 2, 4}},
              {1995, {3, -2, 4}, Shape::Ellipse, {2, 3, 4}},
              {1995, {-2, 3, -4}, Shape::Ellipsoid, {3, 2, 4}},
+             {1995, {-2, -2, 0}, Shape::Ellipse, {2, 2, 0}},  // written as 2002 has it
+             {2002, {-2, 0, 0}, Shape::Ellipse, {2, 2, 0}},   // written as 1995 has it
              {2002, {-2, -2, 0}, Shape::Ellipse, {2, 2, 0}},
              {2002, {-2, -3, 4}, Shape::Ellipse, {3, 2, 4}},
              {2002, {-2, -3, -4}, Shape::Ellipsoid, {3, 2, 4}},
@@ -116,8 +123,11 @@ TEST(Lm63, SignsTellTheOpening) {
         EXPECT_EQ(again->shape, opening->shape);
         EXPECT_EQ(again->size_m, opening->size_m);
     }
-    EXPECT_FALSE(photometry::opening_of_signs(1991, -2, 3, -4));
-    EXPECT_FALSE(photometry::opening_of_signs(2002, -2, 3, 4));
+    for (const int year : {1986, 1995, 2019}) {
+        EXPECT_FALSE(photometry::opening_of_signs(year, 0, -2, 0));
+        EXPECT_FALSE(photometry::opening_of_signs(year, 0, 0, -2));
+        EXPECT_FALSE(photometry::opening_of_signs(year, 2, 3, -4));
+    }
 }
 
 // Planes 0 ... 90, 0 ... 180, 90 ... 270: what is left out mirrors what is there.
@@ -219,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"multiplier", [](F& f) { f.multiplier = "0"; }, 5, "> 0", "0"},
         Refusal{"photometric type", [](F& f) { f.type = "4"; }, 5, "1 ... 3", "4"},
         Refusal{"unit", [](F& f) { f.unit = "m"; }, 5, "a number", "'m'"},
-        Refusal{"opening", [](F& f) { f.opening = "-1 2 3"; }, 5, "2002", "width -1 m"},
+        Refusal{"opening", [](F& f) { f.opening = "1 2 -3"; }, 5, "edition", "height -3 m"},
         Refusal{"ballast", [](F& f) { f.factors = "-1 1 1"; }, 6, "> 0", "-1"},
         Refusal{"watts", [](F& f) { f.factors = "1 1 nan"; }, 6, "a number", "nan"},
         Refusal{"vertical angles",
