@@ -89,15 +89,20 @@ double read_scale(LineReader& lines, int lamp_set, double conversion, Photometry
     return scale;
 }
 
-std::vector<double> read_angles(LineReader& lines, const std::string& what, int count) {
+std::vector<double> read_angles(LineReader& lines,
+                                const std::string& what,
+                                AngleRange range,
+                                int count) {
     std::vector<double> angles;
     for (int k = 0; k < count; ++k) {
-        angles.push_back(lines.number(what));
-        if (k > 0 &&
-            !(angles[static_cast<std::size_t>(k)] > angles[static_cast<std::size_t>(k) - 1]))
+        const double angle = lines.number(what);
+        if (!(angle >= range.least_deg && angle <= range.most_deg))
+            lines.refuse(what, fmt::format("{} ... {} degrees", range.least_deg, range.most_deg),
+                         fmt::format("{}", angle));
+        if (!angles.empty() && !(angle > angles.back()))
             lines.refuse(what, "ascending angles",
-                         fmt::format("{} after {}", angles[static_cast<std::size_t>(k)],
-                                     angles[static_cast<std::size_t>(k) - 1]));
+                         fmt::format("{} after {}", angle, angles.back()));
+        angles.push_back(angle);
     }
     return angles;
 }
@@ -143,15 +148,14 @@ std::vector<double> planes_held(const LineReader& lines,
         default:
             break;
     }
-    if (listed.back() > 360)
-        lines.refuse("C planes", "at most 360 degrees", fmt::format("{}", listed.back()));
     return listed;
 }
 
 void read_table(LineReader& lines, const Counts& counts, double scale, Photometry& photometry) {
-    const std::vector<double> listed = read_angles(lines, "C plane", counts.planes);
+    const std::vector<double> listed =
+        read_angles(lines, "C plane", plane_range(Coordinates::C), counts.planes);
     const std::vector<double> held = planes_held(lines, counts, listed);
-    photometry.angles_deg = read_angles(lines, "gamma", counts.angles);
+    photometry.angles_deg = read_angles(lines, "gamma", angle_range(Coordinates::C), counts.angles);
     std::vector<double> rows;
     for (std::size_t k = 0; k < held.size() * photometry.angles_deg.size(); ++k)
         rows.push_back(scale * lines.not_negative("intensity"));

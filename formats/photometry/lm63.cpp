@@ -190,15 +190,6 @@ void close_circle(Photometry& photometry) {
     }
 }
 
-void check_ascending(const std::vector<double>& angles,
-                     const std::string& what,
-                     const std::string& where) {
-    for (std::size_t k = 1; k < angles.size(); ++k)
-        if (!(angles[k] > angles[k - 1]))
-            throw Error{what + " of photometric file", where, "ascending angles",
-                        fmt::format("{} after {}", angles[k], angles[k - 1])};
-}
-
 void note_missing_angles(Photometry& photometry) {
     const double first = photometry.angles_deg.front(), last = photometry.angles_deg.back();
     if (photometry.coordinates == Coordinates::C && !((is_angle(first, 0) || is_angle(first, 90)) &&
@@ -228,9 +219,11 @@ Photometry read_lm63(const TextFile& file) {
 
     const Head head = read_head(numbers, year, photometry);
     photometry.angles_deg = numbers.next_many("vertical angle", head.angle_count);
-    check_ascending(photometry.angles_deg, "vertical angles", numbers.where());
+    check_ascending(photometry.angles_deg, angle_range(photometry.coordinates),
+                    "vertical angles of photometric file", numbers.where());
     photometry.planes_deg = numbers.next_many("horizontal angle", head.plane_count);
-    check_ascending(photometry.planes_deg, "horizontal angles", numbers.where());
+    check_ascending(photometry.planes_deg, plane_range(photometry.coordinates),
+                    "horizontal angles of photometric file", numbers.where());
     const Symmetry symmetry = symmetry_by_last_plane(photometry, numbers.where());
     const int count = head.angle_count * head.plane_count;
     for (int k = 0; k < count; ++k)

@@ -11,51 +11,9 @@
 namespace nearfield::photometry {
 namespace {
 
-struct Range {
-    double least_deg, most_deg;
-};
-
-Range plane_range(Coordinates coordinates) {
-    switch (coordinates) {
-        case Coordinates::C:
-            return {0, 360};
-        case Coordinates::B:
-            return {-90, 90};
-        case Coordinates::A:
-            return {-180, 180};
-    }
-    return {0, 0};
-}
-
-Range angle_range(Coordinates coordinates) {
-    switch (coordinates) {
-        case Coordinates::C:
-            return {0, 180};
-        case Coordinates::B:
-            return {-180, 180};
-        case Coordinates::A:
-            return {-90, 90};
-    }
-    return {0, 0};
-}
-
-void check_angles(const std::vector<double>& angles_deg,
-                  Range range,
-                  const std::string& what,
-                  const std::string& where) {
-    for (std::size_t k = 0; k < angles_deg.size(); ++k) {
-        const double least = k == 0 ? range.least_deg : angles_deg[k - 1];
-        const double angle = angles_deg[k];
-        if (!(angle >= least && angle <= range.most_deg) || (k > 0 && angle == least))
-            throw Error{what + " of photometry", where,
-                        fmt::format("ascending angles within {} ... {} degrees", range.least_deg,
-                                    range.most_deg),
-                        fmt::format("{} as number {}", angle, k + 1)};
-    }
-}
-
 void check_planes(const Photometry& photometry, const std::string& where) {
-    check_angles(photometry.planes_deg, plane_range(photometry.coordinates), "planes", where);
+    check_ascending(photometry.planes_deg, plane_range(photometry.coordinates),
+                    "planes of photometry", where);
     const std::vector<double>& planes = photometry.planes_deg;
     const bool is_c0_alone = planes.size() == 1 && planes[0] == 0;
     if (photometry.coordinates == Coordinates::C
@@ -71,6 +29,45 @@ void check_planes(const Photometry& photometry, const std::string& where) {
 
 }  // namespace
 
+AngleRange plane_range(Coordinates coordinates) {
+    switch (coordinates) {
+        case Coordinates::C:
+            return {0, 360};
+        case Coordinates::B:
+            return {-90, 90};
+        case Coordinates::A:
+            return {-180, 180};
+    }
+    return {0, 0};
+}
+
+AngleRange angle_range(Coordinates coordinates) {
+    switch (coordinates) {
+        case Coordinates::C:
+            return {0, 180};
+        case Coordinates::B:
+            return {-180, 180};
+        case Coordinates::A:
+            return {-90, 90};
+    }
+    return {0, 0};
+}
+
+void check_ascending(const std::vector<double>& angles_deg,
+                     AngleRange range,
+                     const std::string& what,
+                     const std::string& where) {
+    for (std::size_t k = 0; k < angles_deg.size(); ++k) {
+        const double least = k == 0 ? range.least_deg : angles_deg[k - 1];
+        const double angle = angles_deg[k];
+        if (!(angle >= least && angle <= range.most_deg) || (k > 0 && angle == least))
+            throw Error{what, where,
+                        fmt::format("ascending angles within {} ... {} degrees", range.least_deg,
+                                    range.most_deg),
+                        fmt::format("{} as number {}", angle, k + 1)};
+    }
+}
+
 std::string label(const Photometry& photometry, const std::string& keyword) {
     for (const auto& [key, text] : photometry.labels)
         if (key == keyword)
@@ -80,7 +77,8 @@ std::string label(const Photometry& photometry, const std::string& keyword) {
 
 void check(const Photometry& photometry, const std::string& where) {
     check_planes(photometry, where);
-    check_angles(photometry.angles_deg, angle_range(photometry.coordinates), "angles", where);
+    check_ascending(photometry.angles_deg, angle_range(photometry.coordinates),
+                    "angles of photometry", where);
     const std::size_t planes = photometry.planes_deg.size(), angles = photometry.angles_deg.size();
     if (angles < 2)
         throw Error{"angles of photometry", where, "two or more", fmt::format("{}", angles)};

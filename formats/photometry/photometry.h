@@ -93,6 +93,19 @@ struct Photometry {
 /// A label's text; empty where there is none.
 std::string label(const Photometry& photometry, const std::string& keyword);
 
+/// Between which degrees planes and angles of a table may lie.
+struct AngleRange {
+    double least_deg = 0, most_deg = 0;
+};
+AngleRange plane_range(Coordinates coordinates);
+AngleRange angle_range(Coordinates coordinates);
+
+/// Throws Error naming `what` and `where` unless the angles ascend within the range.
+void check_ascending(const std::vector<double>& angles_deg,
+                     AngleRange range,
+                     const std::string& what,
+                     const std::string& where);
+
 /// Throws Error naming `where` and what breaks a rule above: ascending angles in their range,
 /// finite intensities >= 0 as many as the angles ask for, a lamp set, sizes >= 0.
 void check(const Photometry& photometry, const std::string& where);

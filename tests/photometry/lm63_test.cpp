@@ -236,7 +236,13 @@ INSTANTIATE_TEST_SUITE_P(
                 [](F& f) {
                     f.angles = {90, 0};
                 },
-                7, "ascending", "0 after 90"},
+                7, "ascending", "0 as number 2"},
+        Refusal{"vertical angles",
+                [](F& f) {
+                    f.angles = {0, 181};
+                },
+                7, "0 ... 180", "181"},
+        Refusal{"horizontal angles", [](F& f) { f.planes = {361}; }, 8, "0 ... 360", "361"},
         Refusal{"horizontal angles", [](F& f) { f.planes = {45}; }, 8, "0 ... 360", "45"},
         Refusal{"intensity 2 of 2", [](F& f) { f.intensities[1] = -3; }, 9, ">= 0", "-3"},
         Refusal{"longer",
