@@ -7,7 +7,7 @@ packages=(
     ca-certificates ccache clang-format-14 clang-tidy-14 cmake g++ git glslang-tools ninja-build pkg-config python3
     # libraries
     libaravis-dev libbenchmark-dev libceres-dev libcli11-dev libegl-dev libeigen3-dev libembree-dev libepoxy-dev libfmt-dev libglfw3-dev libglm-dev libgmock-dev libgtest-dev libhwy-dev libimgui-dev
-    libopencv-dev libopenexr-dev libopenimageio-dev libpng-dev libtbb-dev libtinygltf-dev libusb-1.0-0-dev libxxhash-dev nlohmann-json3-dev
+    libopencv-dev libopenexr-dev libopenimageio-dev libpng-dev libpugixml-dev libtbb-dev libtinygltf-dev libusb-1.0-0-dev libxxhash-dev nlohmann-json3-dev
     # OpenGL on the CPU, for tests and for machines without a graphics card
     libegl1 libgl1-mesa-dri
     # a display without a screen, and a mouse and keyboard for it: tests of the viewer

@@ -173,6 +173,24 @@ double window_variance_y(
     return variance;
 }
 
+// Far away, with the normal -z, the sum is int int C Phi: moments of order zero alone. Radiance
+// weighting has no kernel there.
+constexpr glm::dvec3 kFacing{0.0, 0.0, -1.0};
+
+Slab without_kernel(const Slab& slab) {
+    Slab plain_geometry;
+    plain_geometry.texels = slab.texels;
+    plain_geometry.channels = slab.channels;
+    return plain_geometry;
+}
+
+// Of that sum to intensity.
+double intensity_scale(const Slab& slab, double cosine) {
+    return slab.weighting == Weighting::Irradiance
+               ? square(slab.delta_m) / (cosine * cosine * cosine)
+               : cosine;
+}
+
 }  // namespace
 
 Receiver to_slab(const Slab& slab, const Receiver& receiver) {
@@ -265,19 +283,12 @@ glm::dvec3 intensity(const Slab& slab, glm::dvec3 direction) {
     const AxisWindows y = make_far_windows(slab, 1, direction.y / direction.z);
     Sums sums{};
     const std::size_t stride = slab.image_offset(1, 0);
-    // With n = -z the sum is int int C Phi: moments of order zero alone. Radiance weighting has no
-    // kernel here.
-    Slab plain_geometry;
-    plain_geometry.texels = slab.texels;
-    plain_geometry.channels = slab.channels;
+    const Slab plain_geometry = without_kernel(slab);
     for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
         add_image(plain_geometry, slab.coeffs.data() + slab.image_offset(0, m), stride, wx, wy,
-                  {0.0, 0.0, -1.0}, sums.data());
+                  kFacing, sums.data());
     });
-    const double scale = slab.weighting == Weighting::Irradiance
-                             ? square(slab.delta_m) / (cosine * cosine * cosine)
-                             : cosine;
-    return color(slab, sums) * scale;
+    return color(slab, sums) * intensity_scale(slab, cosine);
 }
 
 glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction) {
@@ -285,6 +296,27 @@ glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction) {
     for (const Slab& slab : lightfield.slabs)
         sum += intensity(slab, glm::transpose(slab.luminaire_from_slab.rotation) * direction);
     return sum;
+}
+
+double intensity_sigma_y(const LightField& lightfield, glm::dvec3 direction) {
+    double variance = 0.0;
+    for (const Slab& slab : lightfield.slabs) {
+        const glm::dvec3 d = glm::transpose(slab.luminaire_from_slab.rotation) * direction;
+        const double cosine = glm::normalize(d).z;
+        if (slab.sigma.empty() || !(cosine > 0.0))
+            continue;
+        const AxisWindows x = make_far_windows(slab, 0, d.x / d.z);
+        const AxisWindows y = make_far_windows(slab, 1, d.y / d.z);
+        const Slab plain_geometry = without_kernel(slab);
+        for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
+            variance += square(intensity_scale(slab, cosine)) *
+                        window_variance_y(slab, m, wx.range, wy.range, [&](int i, int j) {
+                            return texel_weight(plain_geometry, wx, wy, kFacing, i, j);
+                        });
+        });
+    }
+    const double common = lightfield.scale_sigma_rel * luminance(intensity(lightfield, direction));
+    return std::sqrt(variance + square(common));
 }
 
 glm::dvec3 irradiance(const Slab& slab, const Receiver& receiver) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/photometry/intensity.h"
 
+#include "formats/files/error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -80,7 +82,10 @@ glm::dvec3 direction_of(Coordinates coordinates, Angles angles) {
 }
 
 Angles angles_of(Coordinates coordinates, const glm::dvec3& d) {
-    const auto deg = [](double y, double x) { return std::atan2(y, x) / kRadPerDeg; };
+    // At a pole no azimuth is meant, while atan2 of signed zeros may say 180 degrees.
+    const auto deg = [](double y, double x) {
+        return y == 0 && x == 0 ? 0 : std::atan2(y, x) / kRadPerDeg;
+    };
     switch (coordinates) {
         case Coordinates::C: {
             const double plane_deg = deg(-d.y, d.x);
@@ -138,6 +143,16 @@ double flux_lm(const Photometry& photometry, double most_polar_deg) {
         for (std::size_t a = 0; a < angle_weights.size(); ++a)
             flux += plane_weights[p] * angle_weights[a] * photometry.at(p, a);
     return flux;
+}
+
+void scale_to(Photometry& photometry, double flux_asked_lm) {
+    const double flux = flux_lm(photometry);
+    if (!(flux > 0))
+        throw Error{"photometry without light", "flux", "> 0", "0 lm"};
+    for (double& intensity : photometry.intensity_cd)
+        intensity *= flux_asked_lm / flux;
+    for (LampSet& lamps : photometry.lamps)
+        lamps.flux_lm *= flux_asked_lm / flux;
 }
 
 Peak peak(const Photometry& photometry) {

@@ -6,6 +6,10 @@
 #include "formats/photometry/intensity.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace nearfield::photometry {
 namespace {
@@ -33,6 +37,16 @@ Opening opening_of(const Slab& slab) {
 
 }  // namespace
 
+TableOptions choose_table(const LightField& lightfield, double most_error_rel) {
+    const double flux = model::luminance(model::flux(lightfield));
+    TableOptions table{36, 45};
+    constexpr int kMostQuarterAngles = 360;
+    while (table.quarter_angles < kMostQuarterAngles &&
+           !(std::abs(flux_lm(photometry_of(lightfield, table)) - flux) <= most_error_rel * flux))
+        table = {std::min(2 * table.planes, 1440), 2 * table.quarter_angles};
+    return table;
+}
+
 Photometry photometry_of(const LightField& lightfield, const TableOptions& options) {
     nearfield::check(lightfield, "light field");
     check_table(lightfield, options);
@@ -48,14 +62,16 @@ Photometry photometry_of(const LightField& lightfield, const TableOptions& optio
     const int quarters = lightfield.slabs.size() == 1 ? 1 : 2;
     for (int a = 0; a <= quarters * options.quarter_angles; ++a)
         photometry.angles_deg.push_back(90.0 * a / options.quarter_angles);
-    for (int p = 0; p < options.planes; ++p)
-        for (const double angle_deg : photometry.angles_deg) {
-            const Angles at{photometry.planes_deg[static_cast<std::size_t>(p)], angle_deg};
-            photometry.intensity_cd.push_back(
-                model::luminance(model::intensity(lightfield, direction_of(Coordinates::C, at))));
-        }
+    photometry.intensity_cd.resize(photometry.planes_deg.size() * photometry.angles_deg.size());
+    tbb::parallel_for(0, options.planes, [&](int plane) {
+        const auto p = static_cast<std::size_t>(plane);
+        for (std::size_t a = 0; a < photometry.angles_deg.size(); ++a)
+            photometry.at(p, a) = model::luminance(model::intensity(
+                lightfield, direction_of(Coordinates::C,
+                                         {photometry.planes_deg[p], photometry.angles_deg[a]})));
+    });
     for (std::size_t a = 0; a < photometry.angles_deg.size(); ++a)
-        photometry.intensity_cd.push_back(photometry.at(0, a));
+        photometry.at(photometry.planes_deg.size() - 1, a) = photometry.at(0, a);
     check(photometry, "photometry of light field");
     return photometry;
 }

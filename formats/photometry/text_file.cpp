@@ -37,7 +37,10 @@ std::string TextFile::at(std::size_t line) const {
 }
 
 TextFile read_text(const std::string& path) {
-    const std::string bytes = read_file(path);
+    return split_lines(path, read_file(path));
+}
+
+TextFile split_lines(const std::string& path, const std::string& bytes) {
     TextFile file{path, {}};
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     for (std::size_t at = bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;

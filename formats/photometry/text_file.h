@@ -27,6 +27,9 @@ struct TextFile {
 /// Throws Error if the file cannot be read, is larger than 64 MiB or holds a zero byte.
 TextFile read_text(const std::string& path);
 
+/// The same of a file's bytes; `path` names them in errors. Throws Error at a zero byte.
+TextFile split_lines(const std::string& path, const std::string& bytes);
+
 /// A word in quotes for a message, long ones cut.
 std::string shown(std::string_view word);
 

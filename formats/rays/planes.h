@@ -34,18 +34,6 @@ struct Planes {
     glm::dvec2 u_min_m{0}, u_max_m{0}, s_min_m{0}, s_max_m{0};
 };
 
-/// The slab of a direction's dominant axis: 0 ... 5 for +z, +x, -x, +y, -y, -z.
-int dominant_slab(glm::vec3 direction);
-
-/// The part of a ray that each slab takes. Near the planes where two axes are equally dominant it
-/// passes from one slab to the other smoothly (half-width: kHalfBand), so that no slab's light ends
-/// in an edge that its basis functions could not follow. Sums to one, or is all zero where the
-/// dominant axis has no slab. With one slab: all to it where z > 0.
-std::array<float, 6> slab_shares(glm::vec3 direction, int slab_count);
-
-/// The rotation of slab 0 ... 5.
-glm::dmat3 file_from_slab(int slab);
-
 /// The plane along a slab's axis where its rays are narrowest: least flux-weighted mean square
 /// distance from their mean position. Closed form. Rays that are all parallel have none: the mean
 /// of their positions along the axis. `first_start_m`: the smallest start position along the axis.

@@ -3,6 +3,7 @@
 
 #include "formats/files/error.h"
 #include "formats/model/profile.h"
+#include "formats/model/slab_axes.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -60,7 +61,7 @@ Members share_out_directions(const RaySet& set, int slab_count) {
     Members members;
     for (std::size_t r = 0; r < set.rays.size(); ++r) {
         const glm::vec3 direction = set.rays[r].direction;
-        const std::array<float, 6> shares = slab_shares(direction, slab_count);
+        const std::array<float, 6> shares = model::slab_shares(direction, slab_count);
         const bool too_slanting = slab_count == 1 && direction.z < kLeastCosine;
         bool taken = false;
         for (std::size_t s = 0; s < shares.size() && !too_slanting; ++s)
@@ -80,7 +81,7 @@ Members share_out_directions(const RaySet& set, int slab_count) {
 int choose_slab_count(const RaySet& set) {
     std::array<double, 6> of_axis{};
     for (const Ray& ray : set.rays)
-        of_axis[static_cast<std::size_t>(dominant_slab(ray.direction))] += ray.flux;
+        of_axis[static_cast<std::size_t>(model::dominant_slab(ray.direction))] += ray.flux;
     double total = 0.0;
     for (const double f : of_axis)
         total += f;
@@ -96,7 +97,7 @@ Planes choose_planes(const RaySet& set,
                      const ConvertOptions& options,
                      double trim) {
     Planes planes;
-    planes.file_from_slab = file_from_slab(slab);
+    planes.file_from_slab = model::axes_from_slab(slab);
     const Waist waist = find_waist(set, members, planes.file_from_slab);
     const bool is_first = slab == 0;
     planes.s_m = is_first && options.s_plane_mm ? *options.s_plane_mm * 1e-3 : waist.s_m;

@@ -2,6 +2,7 @@
 #include "formats/files/error.h"
 #include "formats/photometry/intensity.h"
 #include "formats/photometry/photometric_file.h"
+#include "formats/photometry/tm33.h"
 #include "tests/photometry/lamp_files.h"
 #include "tests/support/mutate.h"
 
@@ -42,6 +43,11 @@ std::string eulumdat_symmetric() {
     return to_text(file);
 }
 
+std::string tm33() {
+    test::write_text("whole.ies", type_c());
+    return photometry::to_tm33(photometry::read_photometry("whole.ies"));
+}
+
 class DamagedPhotometry : public testing::TestWithParam<std::string (*)()> {};
 
 // Proves that damaged files give a photometry that keeps the rules or an Error: no other exception,
@@ -73,7 +79,7 @@ TEST_P(DamagedPhotometry, GivesATableOrAnError) {
 INSTANTIATE_TEST_SUITE_P(
     OfEveryFormat,
     DamagedPhotometry,
-    testing::Values(type_c, type_b, edition_1991, eulumdat, eulumdat_symmetric));
+    testing::Values(type_c, type_b, edition_1991, eulumdat, eulumdat_symmetric, tm33));
 
 }  // namespace
 }  // namespace nearfield

@@ -54,48 +54,52 @@ std::vector<double> steps(double first, double last, double step) {
 }
 
 std::string to_text(const Lm63File& file) {
-    std::string text = file.first_line + "\r\n";
+    std::ostringstream text;
+    text << file.first_line << "\r\n";
     for (const std::string& label : file.labels)
-        text += label + "\r\n";
-    text += file.tilt + "\r\n" + file.lamps + " " + file.multiplier + " " +
-            std::to_string(file.angles.size()) + " " + std::to_string(file.planes.size()) + " " +
-            file.type + " " + file.unit + " " + file.opening + "\r\n" + file.factors + "\r\n";
-    text += row(file.angles, " ") + row(file.planes, " ");
+        text << label << "\r\n";
+    text << file.tilt << "\r\n" << file.lamps << " " << file.multiplier << " ";
+    text << file.angles.size() << " " << file.planes.size() << " " << file.type << " ";
+    text << file.unit << " " << file.opening << "\r\n" << file.factors << "\r\n";
+    text << row(file.angles, " ") << row(file.planes, " ");
     const auto angles = static_cast<std::ptrdiff_t>(file.angles.size());
     for (auto at = file.intensities.begin(); at != file.intensities.end(); at += angles)
-        text += row({at, at + angles}, at == file.intensities.begin() ? ", " : " ");
-    return text;
+        text << row({at, at + angles}, at == file.intensities.begin() ? ", " : " ");
+    return text.str();
 }
 
 std::string to_text(const LdtFile& file) {
-    std::string text = "nobody\n3\n" + std::to_string(file.symmetry) + "\n" +
-                       std::to_string(file.planes.size()) + "\n0\n" +
-                       std::to_string(file.angles.size()) + "\n0\n17\na lamp\nnumber\nname\ndate\n";
-    text += file.sizes + "100\n100\n" + file.conversion + "\n0\n" + file.lamp_sets;
+    std::ostringstream text;
+    text << "nobody\n3\n" << file.symmetry << "\n" << file.planes.size() << "\n0\n";
+    text << file.angles.size() << "\n0\n17\na lamp\nnumber\nname\ndate\n";
+    text << file.sizes << "100\n100\n" << file.conversion << "\n0\n" << file.lamp_sets;
     for (int k = 0; k < 10; ++k)
-        text += "0." + std::to_string(k) + "\n";
-    return text + row(file.planes, "\n") + row(file.angles, "\n") + row(file.intensities, "\n");
+        text << "0." << k << "\n";
+    text << row(file.planes, "\n") << row(file.angles, "\n") << row(file.intensities, "\n");
+    return text.str();
 }
 
 Lm63File skew_lm63(photometry::Coordinates coordinates, double step_deg) {
     Lm63File file;
+    int type = 0;
     switch (coordinates) {
         case photometry::Coordinates::C:
-            file.type = "1";
+            type = 1;
             file.planes = steps(0, 360, step_deg);
             file.angles = steps(0, 180, step_deg);
             break;
         case photometry::Coordinates::B:
-            file.type = "2";
+            type = 2;
             file.planes = steps(-90, 90, step_deg);
             file.angles = steps(-180, 180, step_deg);
             break;
         case photometry::Coordinates::A:
-            file.type = "3";
+            type = 3;
             file.planes = steps(-180, 180, step_deg);
             file.angles = steps(-90, 90, step_deg);
             break;
     }
+    file.type = std::to_string(type);
     file.intensities = table(coordinates, file.planes, file.angles);
     return file;
 }

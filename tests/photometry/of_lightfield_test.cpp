@@ -57,6 +57,7 @@ TEST(OfLightField, KeepsIntensityAndFlux) {
         test::write_text("skew.ies", to_text(test::skew_lm63(photometry::Coordinates::C, 2))));
     lamp.opening = {photometry::Shape::Rectangle, {0.3, 0.2, 0}, {}};
     photometry::LightFieldOptions options;
+    options.slabs = 1;
     options.texels = 128;
     const auto far = photometry::to_lightfield(lamp, options);
     const Photometry again = photometry::photometry_of(far.lightfield, {360, 180});

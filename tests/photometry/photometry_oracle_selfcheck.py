@@ -1,8 +1,7 @@
 """Checks of photometry_oracle.py on made-up files with known answers (writes them to a temporary folder)."""
-import json, math, os, subprocess, sys, tempfile
-HERE=os.path.dirname(os.path.abspath(__file__)); ORACLE=os.path.join(HERE,'..','photometry_oracle.py')
-sys.path.insert(0,os.path.join(HERE,'..')); import photometry_oracle as o
-T=tempfile.mkdtemp()
+import atexit, math, os, shutil, sys, tempfile
+sys.path.insert(0,os.path.dirname(os.path.abspath(__file__))); import photometry_oracle as o
+T=tempfile.mkdtemp(); atexit.register(shutil.rmtree,T)
 def put(name,text):
     p=os.path.join(T,name); open(p,'w',newline='').write(text); return o.examine(p)
 def ies(kind,V,H,f,head='IESNA:LM-63-2002\n',tilt='NONE',second='1 1 10',mult=1,sep=' '):
@@ -11,7 +10,9 @@ def ies(kind,V,H,f,head='IESNA:LM-63-2002\n',tilt='NONE',second='1 1 10',mult=1,
     return f"{head}TILT={tilt}\n1 1000 {mult} {len(V)} {len(H)} {n} 1 1 2 0\n{second}\n{sep.join(map(str,V))}\n{sep.join(map(str,H))}\n{rows}\n"
 R=lambda a,b,s:[a+s*k for k in range(int((b-a)/s)+1)]
 close=lambda a,b,t=1e-9: abs(a-b)<=t*max(1,abs(b))
-def ok(c,what): print('ok  ' if c else 'FAIL',what)
+failed=[]
+def ok(c,what):
+    print('ok  ' if c else 'FAIL',what); failed.extend([] if c else [what])
 iso=lambda v,h:100.0
 r=put('c.ies',ies('C',R(0,180,10),R(0,360,30),iso)); ok(close(r['flux_lm'],400*math.pi),'C isotropic')
 r=put('a.ies',ies('A',R(-90,90,10),R(-180,180,30),iso)); ok(close(r['flux_lm'],400*math.pi),'A isotropic')
@@ -68,3 +69,4 @@ r=put('n.ldt',ldt(1,[0],G,iso,[0],lamps=-1,conv='0,5')); ok(r['absolute'] and cl
 good=ldt(4,Cs,G,iso,R(0,90,15))
 for name,text in (('short',good.rstrip().rsplit('\r\n',1)[0]),('extra',good+'3\r\n'),('Isym 5',good.replace('\r\n4\r\n','\r\n5\r\n',1)),('word',good.replace('400','4oo')),('Mc',ldt(4,R(0,350,10)[:-1],G,iso,R(0,90,10))),('planes',ldt(4,R(1,346,15),G,iso,R(0,90,15)))):
     r=put('bad.ldt',text); ok('error' in r,'refuse LDT %s: %s, line %s'%(name,r.get('error'),r.get('line')))
+sys.exit(len(failed)>0)

@@ -64,7 +64,7 @@ class RoundTrip : public testing::TestWithParam<Symmetry> {};
 TEST_P(RoundTrip, KeepsTableAndSymmetry) {
     const Photometry lamp = random_lamp(GetParam(), 3);
     EXPECT_EQ(symmetry_of(lamp), GetParam());
-    for (const FileFormat format : {FileFormat::Lm63, FileFormat::Eulumdat}) {
+    for (const FileFormat format : {FileFormat::Lm63, FileFormat::Eulumdat, FileFormat::Tm33}) {
         const Photometry again = through(lamp, format);
         expect_same_table(lamp, again);
         EXPECT_EQ(symmetry_of(again), GetParam());
@@ -97,11 +97,12 @@ TEST(RoundTrip, SymmetryLeavesPlanesOut) {
     EXPECT_EQ(rows(Symmetry::Axial), 1U);
 }
 
-TEST(RoundTrip, KeepsTypesAAndBInLm63Alone) {
+TEST(RoundTrip, KeepsTypesAAndBInLm63AndTm33) {
     for (const Coordinates coordinates : {Coordinates::A, Coordinates::B}) {
         const Photometry lamp = photometry::read_photometry(
             test::write_text("skew.ies", to_text(test::skew_lm63(coordinates, 15))));
         expect_same_table(lamp, through(lamp, FileFormat::Lm63));
+        expect_same_table(lamp, through(lamp, FileFormat::Tm33));
         EXPECT_THROW(through(lamp, FileFormat::Eulumdat), Error);
     }
 }
@@ -113,6 +114,10 @@ TEST(RoundTrip, KeepsOpeningsTiltAndAbsoluteLight) {
     for (const Shape shape :
          {Shape::Rectangle, Shape::Ellipse, Shape::CylinderX, Shape::CylinderY, Shape::Ellipsoid}) {
         lamp.opening = {shape, {0.3, 0.2, 0.1}, {}};
+        const Photometry in_xml = through(lamp, FileFormat::Tm33);
+        EXPECT_EQ(in_xml.opening.shape, shape);
+        EXPECT_LT(glm::length(in_xml.opening.size_m - lamp.opening.size_m), 1e-15);
+        EXPECT_TRUE(in_xml.is_absolute);
         const Photometry again = through(lamp, FileFormat::Lm63);
         EXPECT_EQ(again.opening.shape, shape);
         EXPECT_EQ(again.opening.size_m, lamp.opening.size_m);

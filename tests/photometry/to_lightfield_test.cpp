@@ -84,6 +84,7 @@ TEST_P(FarField, IntensityIsThePhotometrys) {
     const Photometry lamp = skew_lamp(GetParam(), Shape::Rectangle);
     const auto error_of = [&](int texels) {
         photometry::LightFieldOptions options;
+        options.slabs = 1;
         options.texels = texels;
         const LightField field = photometry::to_lightfield(lamp, options).lightfield;
         const Slab& slab = field.slabs[0];
@@ -101,6 +102,7 @@ TEST_P(FarField, IlluminanceIsThatOfTheOpening) {
     for (const Shape shape : {Shape::Rectangle, Shape::Ellipsoid}) {
         const Photometry lamp = skew_lamp(GetParam(), shape);
         photometry::LightFieldOptions options;
+        options.slabs = 1;
         options.texels = 128;
         options.cells = 8;  // an ellipse's edge is as coarse as a cell
         const LightField field = photometry::to_lightfield(lamp, options).lightfield;
@@ -128,6 +130,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryType,
 TEST(FarLightField, KeepsTheFluxWithinTheHalfAngle) {
     const Photometry lamp = skew_lamp(Coordinates::C, Shape::Ellipse);
     photometry::LightFieldOptions options;
+    options.slabs = 1;
     options.half_angle_deg = 60;
     options.delta_sides = 1000;  // so that the opening's size hardly widens S
     options.texels = 128;
@@ -143,6 +146,38 @@ TEST(FarLightField, KeepsTheFluxWithinTheHalfAngle) {
         }
     EXPECT_NEAR(far.lightfield_lm, expected, 1e-3 * expected);
     EXPECT_DOUBLE_EQ(far.photometry_lm, photometry::flux_lm(lamp));
+}
+
+// A lamp that shines all around, without symmetry: with six slabs nothing is lost, and what slabs
+// share adds up, in their middles, between two and in corners.
+TEST_P(FarField, SixSlabsHoldAllLight) {
+    const Photometry lamp = skew_lamp(GetParam(), Shape::Rectangle);
+    photometry::LightFieldOptions options;
+    options.texels = 128;
+    const auto far = photometry::to_lightfield(lamp, options);
+    ASSERT_EQ(far.lightfield.slabs.size(), 6U);  // chosen: five would lose a sixth
+    EXPECT_GT(far.least_lost_deg, far.most_lost_deg);
+    EXPECT_NEAR(far.lightfield_lm, far.photometry_lm, 1e-3 * far.photometry_lm);
+    for (const glm::dvec3& d :
+         {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0.1), glm::dvec3(-1, 0.2, 0), glm::dvec3(0, 1, 0.2),
+          glm::dvec3(0.1, -1, 0), glm::dvec3(0.1, 0.2, -1), glm::dvec3(1, 0.95, 0.1),
+          glm::dvec3(1, -1, 1), glm::dvec3(-1, -0.97, -1), glm::dvec3(0.3, 1, -1.02)}) {
+        const glm::dvec3 direction = glm::normalize(d);
+        const double expected = seen_cd(lamp, direction);
+        EXPECT_NEAR(model::intensity(far.lightfield, direction).y, expected, 0.01 * expected)
+            << d.x << " " << d.y << " " << d.z;
+    }
+}
+
+TEST(FarLightField, FiveSlabsLoseWhatGoesBackwards) {
+    const Photometry lamp = skew_lamp(Coordinates::C, Shape::Rectangle);
+    photometry::LightFieldOptions options;
+    options.texels = 64;
+    options.slabs = 5;
+    const auto far = photometry::to_lightfield(lamp, options);
+    EXPECT_NEAR(far.least_lost_deg, 180 - std::atan(std::sqrt(2)) * 180 / std::numbers::pi, 1);
+    EXPECT_NEAR(far.most_lost_deg, 180, 1);
+    EXPECT_LT(far.lightfield_lm, 0.9 * far.photometry_lm);
 }
 
 // A headlamp of type A: forwards, right and up of the photometry are +z, -x and +y of the
@@ -163,6 +198,7 @@ TEST(FarLightField, APointAsksForASize) {
     lamp.opening.size_m = {0, 0, 0};
     EXPECT_THROW(photometry::to_lightfield(lamp), Error);
     photometry::LightFieldOptions options;
+    options.slabs = 1;
     options.opening_m = {0.1, 0.1};
     options.texels = 16;
     EXPECT_GT(photometry::to_lightfield(lamp, options).lightfield_lm, 0);

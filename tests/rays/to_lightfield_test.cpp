@@ -3,6 +3,7 @@
 
 #include "formats/files/error.h"
 #include "formats/model/luminaire.h"
+#include "formats/model/slab_axes.h"
 #include "formats/rays/planes.h"
 #include "formats/rays/report.h"
 #include "tests/rays/disk.h"
@@ -51,10 +52,10 @@ TEST(SlabShares, AddUpToOneAndPassSmoothly) {
         // A spiral from pole to pole, 20 turns: 0.36 degrees or less a step.
         const double t = pi * k / kSteps, p = 40 * pi * k / kSteps;
         const glm::vec3 d(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
-        const std::array<float, 6> shares = rays::slab_shares(d, 6);
+        const std::array<float, 6> shares = model::slab_shares(d, 6);
         float sum = 0.0F;
         for (std::size_t s = 0; s < 6; ++s) {
-            const glm::vec3 axis(rays::file_from_slab(static_cast<int>(s))[2]);
+            const glm::vec3 axis(model::axes_from_slab(static_cast<int>(s))[2]);
             EXPECT_GE(shares[s], 0.0F);
             // Where its component is 0.84 of both others, 59.3 degrees from its axis, a slab ends.
             const bool is_near = glm::dot(d, axis) > std::cos(glm::radians(59.5F));
@@ -66,10 +67,10 @@ TEST(SlabShares, AddUpToOneAndPassSmoothly) {
         EXPECT_NEAR(sum, 1.0F, 1e-6F);
         before = shares;
     }
-    const auto corner = rays::slab_shares(glm::normalize(glm::vec3(-1, 1, 1)), 6);
+    const auto corner = model::slab_shares(glm::normalize(glm::vec3(-1, 1, 1)), 6);
     for (const std::size_t s : {0U, 2U, 3U})
         EXPECT_NEAR(corner[s], 1.0F / 3.0F, 1e-6F);
-    EXPECT_NEAR(rays::slab_shares(glm::normalize(glm::vec3(1, 0, 1)), 6)[1], 0.5F, 1e-6F);
+    EXPECT_NEAR(model::slab_shares(glm::normalize(glm::vec3(1, 0, 1)), 6)[1], 0.5F, 1e-6F);
 }
 
 // Proves that without a slab towards -z the others take what they share with it whole, up to where
@@ -77,9 +78,9 @@ TEST(SlabShares, AddUpToOneAndPassSmoothly) {
 TEST(SlabShares, GiveWhatNobodyTakesToTheOthersWhereTheyDominate) {
     const glm::vec3 down_a_little = glm::normalize(glm::vec3(1, 0, -0.99)),
                     down = glm::normalize(glm::vec3(0.99, 0, -1));
-    EXPECT_GT(rays::slab_shares(down_a_little, 6)[5], 0.4F);
-    EXPECT_EQ(rays::slab_shares(down_a_little, 5)[1], 1.0F);
-    EXPECT_EQ(rays::slab_shares(down, 5), (std::array<float, 6>{}));
+    EXPECT_GT(model::slab_shares(down_a_little, 6)[5], 0.4F);
+    EXPECT_EQ(model::slab_shares(down_a_little, 5)[1], 1.0F);
+    EXPECT_EQ(model::slab_shares(down, 5), (std::array<float, 6>{}));
 }
 
 // Proves that where on its way a ray starts does not matter: rays that start beyond the planes are
