@@ -3,6 +3,7 @@
 // a true reason, and what is known of them comes out.
 #include "formats/files/error.h"
 #include "formats/rays/ray_file.h"
+#include "formats/rays/survey.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,18 +108,18 @@ TEST_F(SharedRays, SpeosRaysStartInTheirFilament) {
     EXPECT_NEAR(sides[0], 0.8, 0.02);
 }
 
-// Counts of the measured LED's 100,000 rays.
-TEST_F(SharedRays, TheMeasuredLedIsAsItsVendorSays) {
-    const std::filesystem::path led = *std::filesystem::directory_iterator(folder_ / "osram_led");
-    const rays::RaySet set = rays::read_rays(led.string());
-    EXPECT_NEAR(rays::flux(set), 337.0, 1e-3);
-    constexpr int kPixels = 100;
+// The largest illuminance of n x n pixels on the 6 x 6 mm square at z = 0.1 mm, and the flux
+// through it, by counting rays.
+struct OnSquare {
+    double flux_lm = 0, peak_lx = 0;
+};
+
+OnSquare count_on_square(const rays::RaySet& set, int n) {
     constexpr double kSide_mm = 6, kPlane_mm = 0.1;
-    std::vector<double> pixel(kPixels * kPixels);
-    double through = 0, cone = 0;
+    const auto pixels = static_cast<std::size_t>(n);
+    std::vector<double> pixel(pixels * pixels);
+    OnSquare result;
     for (const rays::Ray& ray : set.rays) {
-        if (ray.direction.z >= std::cos(5 * std::numbers::pi / 180))
-            cone += ray.flux;
         if (ray.direction.z <= 0)
             continue;
         const glm::dvec3 p = 1e3 * glm::dvec3(ray.position_m), d(ray.direction);
@@ -126,15 +127,46 @@ TEST_F(SharedRays, TheMeasuredLedIsAsItsVendorSays) {
             (glm::dvec2(p) + glm::dvec2(d) * ((kPlane_mm - p.z) / d.z)) / kSide_mm;
         if (std::max(std::abs(at.x), std::abs(at.y)) >= 0.5)
             continue;
-        through += ray.flux;
-        const auto index = [](double x) { return static_cast<std::size_t>((x + 0.5) * kPixels); };
-        pixel[index(at.y) * kPixels + index(at.x)] += ray.flux;
+        result.flux_lm += ray.flux;
+        const auto index = [&](double x) { return static_cast<std::size_t>((x + 0.5) * n); };
+        pixel[index(at.y) * pixels + index(at.x)] += ray.flux;
     }
-    EXPECT_NEAR(through, 331.86, 0.01);
-    const double pixel_m2 = std::pow(1e-3 * kSide_mm / kPixels, 2);
-    EXPECT_NEAR(*std::max_element(pixel.begin(), pixel.end()) / pixel_m2, 1.43e8, 0.01e8);
+    result.peak_lx =
+        *std::max_element(pixel.begin(), pixel.end()) / std::pow(1e-3 * kSide_mm / n, 2);
+    return result;
+}
+
+// Counts of the measured LED's 100,000 rays.
+TEST_F(SharedRays, TheMeasuredLedIsAsItsVendorSays) {
+    const std::filesystem::path led = *std::filesystem::directory_iterator(folder_ / "osram_led");
+    const rays::RaySet set = rays::read_rays(led.string());
+    EXPECT_NEAR(rays::flux(set), 337.0, 1e-3);
+    EXPECT_NEAR(count_on_square(set, 100).flux_lm, 331.86, 0.01);
+    EXPECT_NEAR(count_on_square(set, 100).peak_lx, 1.43e8, 0.005e8);
+    EXPECT_NEAR(count_on_square(set, 50).peak_lx, 1.30e8, 0.005e8);
+    EXPECT_NEAR(count_on_square(set, 25).peak_lx, 1.23e8, 0.005e8);
+    double cone = 0;
+    for (const rays::Ray& ray : set.rays)
+        if (ray.direction.z >= std::cos(5 * std::numbers::pi / 180))
+            cone += ray.flux;
     const double cone_sr = 2 * std::numbers::pi * (1 - std::cos(5 * std::numbers::pi / 180));
     EXPECT_NEAR(cone / cone_sr, 112.8, 0.1);
+}
+
+// Where its rays start and which point they come from, without reading them into memory. 56 of
+// 100,000 rays go backwards.
+TEST_F(SharedRays, TheMeasuredLedsSurvey) {
+    const std::filesystem::path led = *std::filesystem::directory_iterator(folder_ / "osram_led");
+    const rays::RaySurvey survey = rays::survey_rays(led.string(), false);
+    EXPECT_EQ(survey.rays, 100000U);
+    EXPECT_NEAR(survey.flux, 337.0, 1e-3);
+    EXPECT_NEAR(survey.flux_stated, 337.0, 1e-3);
+    EXPECT_NEAR(1e3 * survey.least_start_m.z, -1.18, 0.005);
+    EXPECT_NEAR(1e3 * survey.most_start_m.z, 0.02, 1e-6);
+    ASSERT_TRUE(survey.focus_m);
+    EXPECT_LT(glm::length(1e3 * *survey.focus_m - glm::dvec3(-0.6836, 0.8361, -0.4491)), 1e-4);
+    EXPECT_EQ(survey.backward_rays, 56U);
+    EXPECT_NEAR(survey.backward_flux / survey.flux, 56e-5, 1e-8);
 }
 
 }  // namespace
