@@ -3,6 +3,7 @@
 #include "app/convert_options.h"
 #include "app/options.h"
 #include "app/progress.h"
+#include "formats/photometry/photometric_file.h"
 #include "formats/rays/report.h"
 
 #include <CLI/CLI.hpp>
@@ -13,10 +14,8 @@
 namespace nearfield::app {
 namespace {
 
-void run(ConvertCommand& command) {
+void convert_rays(ConvertCommand& command) {
     const double start_s = now_s();
-    check_options([&] { rays::check(command.options); });
-    check_outputs({command.output.path}, {command.input});
     rays::RaySet set = rays::read_rays(command.input, command.read);
     if (command.flux)
         rays::scale_to(set, *command.flux);
@@ -40,16 +39,28 @@ void run(ConvertCommand& command) {
     say(fmt::format("{}: {}\n", command.output.path, cost(run)));
 }
 
+void run(const CLI::App& sub, ConvertCommand& command) {
+    check_options([&] { rays::check(command.options); });
+    check_outputs({command.output.path}, {command.input});
+    const bool is_photometry = photometry::holds_photometry(command.input);
+    refuse_options_of_others(sub, is_photometry ? ConvertInput::Photometry : ConvertInput::Rays);
+    if (is_photometry)
+        convert_photometry(command);
+    else
+        convert_rays(command);
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app) {
     auto c = std::make_shared<ConvertCommand>();
     CLI::App* sub = add_command(
-        app, "convert", "Makes a light field from a ray file",
+        app, "convert", "Makes a light field from a ray file or a photometric file",
         {"nearfield convert led.tm25ray -o led.lightfield.exr",
-         "nearfield convert led.tm25ray -o led.lightfield.exr --slabs 5 --grid 13x11 --no-color"});
+         "nearfield convert led.tm25ray -o led.lightfield.exr --slabs 5 --grid 13x11 --no-color",
+         "nearfield convert street.ies -o street.lightfield.exr --opening-mm 400 250"});
     add_convert_options(*sub, *c);
-    sub->callback([c] { run(*c); });
+    sub->callback([c, sub] { run(*sub, *c); });
 }
 
 }  // namespace nearfield::app

@@ -2,16 +2,23 @@
 #include "app/commands.h"
 #include "app/describe.h"
 #include "app/describe_capture.h"
+#include "app/describe_exchange.h"
 #include "app/describe_rig.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "formats/files/read_file.h"
+#include "formats/photometry/photometric_file.h"
+#include "formats/rays/survey.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string_view>
 
 namespace nearfield::app {
 namespace {
@@ -63,11 +70,32 @@ void explain_rig(const InfoCommand& command) {
     print(command.json ? read_file(command.input) : rig_text(rig));
 }
 
+// Whether a file begins as EXR does.
+bool is_exr(const std::string& path) {
+    std::array<char, 4> magic{};
+    std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
+    return std::string_view(magic.data(), magic.size()) == "\x76\x2f\x31\x01";
+}
+
+void explain_photometry(const InfoCommand& command) {
+    const photometry::Photometry lamp = photometry::read_photometry(command.input);
+    print(command.json ? describe(lamp).dump(2) + "\n" : photometry_text(lamp));
+}
+
+void explain_rays(const InfoCommand& command) {
+    const rays::RaySurvey survey = rays::survey_rays(command.input, true);
+    print(command.json ? describe(survey).dump(2) + "\n" : rays_text(survey));
+}
+
 void run_info(const InfoCommand& command) {
     if (command.input.ends_with(".json"))
         explain_rig(command);
     else if (capture::holds_capture(command.input))
         explain_capture(command);
+    else if (photometry::holds_photometry(command.input))
+        explain_photometry(command);
+    else if (std::filesystem::is_regular_file(command.input) && !is_exr(command.input))
+        explain_rays(command);
     else if (holds_luminaire(command.input))
         explain_luminaire(command, read_kind(command.input));
     else
@@ -78,11 +106,13 @@ void run_info(const InfoCommand& command) {
 
 void add_info(CLI::App& app) {
     auto c = std::make_shared<InfoCommand>();
-    CLI::App* sub = add_command(app, "info", "Explains a file that this program writes",
+    CLI::App* sub = add_command(app, "info", "Explains a file that this program reads or writes",
                                 {"nearfield info headlight.luminaire.exr --verify",
                                  "nearfield info headlight.luminaire.exr --json"});
     sub->add_option("file", c->input,
-                    "light field, luminaire or picture, .exr; a rig, .json; or a capture's folder")
+                    "light field, luminaire or picture, .exr; ray file or photometric file; a rig, "
+                    ".json; or a "
+                    "capture's folder")
         ->required()
         ->type_name("FILE");
     sub->add_flag(

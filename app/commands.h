@@ -14,6 +14,8 @@ void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
 void add_pack(CLI::App& app);
 void add_info(CLI::App& app);
+void add_compare(CLI::App& app);
+void add_farfield(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);
 void add_view(CLI::App& app);

@@ -60,6 +60,8 @@ void add_commands(CLI::App& app) {
     nearfield::app::add_export(app);
     nearfield::app::add_pack(app);
     nearfield::app::add_info(app);
+    nearfield::app::add_compare(app);
+    nearfield::app::add_farfield(app);
     nearfield::app::add_probe(app);
     nearfield::app::add_render(app);
     nearfield::app::add_view(app);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that includes follow the layers, and that a third-party library stays behind its folder.
 
-formats/files <- formats/{model,capture} <- formats/{rays,photometry,farfield,scene,report,environment} <- {acquire, calibrate, render, sample_data} <- app; tests use all.
+formats/files <- formats/{model,capture} <- formats/{rays,photometry,farfield,proxies,scene,report,environment} <- {acquire, calibrate, render, sample_data} <- app; tests use all.
 formats/shared is used by all. Prints each breach as file:line and exits 1 if there is one.
 """
 import pathlib
@@ -20,6 +20,7 @@ ALLOWED = {
     "formats/rig": ["formats/files"],
     "formats/photometry": ["formats/files", "formats/model"],
     "formats/farfield": ["formats/files", "formats/model", "formats/photometry"],
+    "formats/proxies": ["formats/files", "formats/model"],
     "formats/rays": ["formats/files", "formats/model", "formats/shared"],
     "formats/scene": ["formats/files", "formats/shared"],
     "formats/report": ["formats/files"],
@@ -39,7 +40,7 @@ LIBRARIES = {
     r"png\.h": ["formats/files", "formats/capture", "tests"],
     r"xxhash": ["formats/files"],
     r"tiny_gltf|tinygltf": ["formats/scene"],
-    r"pugixml": ["formats/photometry"],
+    r"pugixml": ["formats/photometry", "formats/proxies"],
     r"embree": ["render/cpu"],
     r"epoxy/": ["render/gpu", "app/viewer", "tests/render/gpu", "tests/viewer"],
     r"GLFW/|imgui|backends/imgui": ["app/viewer", "tests/viewer"],
@@ -52,7 +53,7 @@ LIBRARIES = {
     r"opencv2/": ["calibrate", "fit", "tests"],
     r"ceres/": ["calibrate", "tests/calibrate"],
     r"Eigen/": ["calibrate", "fit", "tests"],
-    r"nlohmann/": ["formats/files", "formats/scene", "app", "tests"],
+    r"nlohmann/": ["formats/files", "formats/proxies", "formats/scene", "app", "tests"],
 }
 
 

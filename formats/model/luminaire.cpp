@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/luminaire.h"
 
+#include "formats/model/intensity_sigma.h"
 #include "formats/model/profile.h"
 #include "formats/model/window_sum.h"
 

@@ -40,9 +40,6 @@ double flux_sigma_y(const LightField& lightfield);
 glm::dvec3 intensity(const Slab& slab, glm::dvec3 direction);
 glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction);
 
-/// Standard deviation of intensity's Y from the coefficients' sigma and the common scale's.
-double intensity_sigma_y(const LightField& lightfield, glm::dvec3 direction);
-
 /// Unshadowed irradiance by the windowed sum. Irradiance weighting: exact to rounding. Radiance
 /// weighting: relative error below 1e-4 (quadrature nodes are refined until the 1/R^4 kernel is
 /// resolved).

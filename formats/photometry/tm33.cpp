@@ -194,11 +194,11 @@ void read_luminaire(const XmlSource& source, const pugi::xml_node& root, Photome
     const pugi::xml_node sizes = child_named(luminaire, "Dimensions");
     if (!sizes)
         return;
-    constexpr double kMPerMm = 1e-3;
+    constexpr double kMetersPerMm = 1e-3;
     Opening& opening = photometry.opening;
-    opening.size_m = kMPerMm * glm::dvec3(number_or(source, sizes, "Length", 0, 0),
-                                          number_or(source, sizes, "Width", 0, 0),
-                                          number_or(source, sizes, "Height", 0, 0));
+    opening.size_m = kMetersPerMm * glm::dvec3(number_or(source, sizes, "Length", 0, 0),
+                                               number_or(source, sizes, "Width", 0, 0),
+                                               number_or(source, sizes, "Height", 0, 0));
     opening.shape = Shape::Rectangle;
     const std::string word = squeezed(text_of(child_named(luminaire, "Shape")));
     for (const ShapeName& name : kShapeNames)

@@ -4,7 +4,7 @@ import re
 
 from program import ProgramTest, main, run
 
-COMMANDS = ["demo", "simulate", "convert", "export", "pack", "info", "probe", "render", "view", "bench", "devices", "preview", "capture", "lab",
+COMMANDS = ["demo", "simulate", "convert", "export", "pack", "info", "compare", "farfield", "probe", "render", "view", "bench", "devices", "preview", "capture", "lab",
             "help"]
 
 
