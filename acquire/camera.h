@@ -20,6 +20,11 @@ struct DeviceLost : Error {
     using Error::Error;
 };
 
+/// Another program has the device; it may be about to end (until_free.h).
+struct DeviceBusy : Error {
+    using Error::Error;
+};
+
 /// A frame did not arrive whole; another trigger may do.
 struct IncompleteFrame : Error {
     using Error::Error;
@@ -50,7 +55,8 @@ class Camera {
     virtual ~Camera() = default;
 
     virtual CameraIdentity identity() const = 0;
-    /// Sets all but the exposure. Throws Error where the camera takes another value than asked for.
+    /// Sets all but the exposure. Throws Error where the camera takes another value than asked for,
+    /// DeviceBusy where another program has it: it may be called again.
     virtual void configure(const capture::CameraPlan& plan) = 0;
     /// Asks for an exposure; returns what the camera says it has, us.
     virtual double set_exposure(double exposure_us) = 0;

@@ -49,8 +49,8 @@ SerialLine::SerialLine(std::string path) : path_(std::move(path)) {
     // Two programs on one line would read each other's answers.
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
         close(file_);
-        throw Error{"cannot open serial line", path_, "one that no other program has",
-                    "another has it"};
+        throw DeviceBusy{"cannot open serial line", path_, "one that no other program has",
+                         "another has it"};
     }
 }
 

@@ -17,7 +17,8 @@ std::vector<std::string> find_serial_lines();
 class SerialLine {
   public:
     /// Opens a terminal device at 115200 baud, 8N1, raw, for us alone. Throws Error where it is no
-    /// terminal, may not be opened or is in use, DeviceLost where it is not there.
+    /// terminal or may not be opened, DeviceBusy where it is in use, DeviceLost where it is not
+    /// there.
     explicit SerialLine(std::string path);
     ~SerialLine();
     SerialLine(const SerialLine&) = delete;

@@ -128,8 +128,15 @@ void judge(Session& session) {
 }
 
 void open_bench(Session& session) {
-    session.bench = session.options.open();
-    session.bench.camera->configure(session.capture.header.plan->camera);
+    const auto until_free_told = [&session](const auto& call) {
+        return until_free(call, Patience(session.options.busy_s, session.options.should_stop,
+                                         [&session](const std::string& remark) {
+                                             note(session, "device busy", remark);
+                                         }));
+    };
+    session.bench = until_free_told(session.options.open);
+    until_free_told(
+        [&session] { session.bench.camera->configure(session.capture.header.plan->camera); });
     session.gain_db = session.bench.camera->gain_db();
     session.exposure_us = 0;
 }

@@ -4,6 +4,7 @@
 
 #include "acquire/camera.h"
 #include "acquire/stage.h"
+#include "acquire/until_free.h"
 #include "formats/capture/capture.h"
 
 #include <functional>
@@ -22,7 +23,8 @@ struct SessionOptions {
     /// Opens camera and stage; called again when they were lost. Throws Error.
     std::function<Bench()> open;
     ShouldStop should_stop = [] { return false; };
-    double reconnect_s = 60;  // how long a lost device is tried again
+    double reconnect_s = 60;          // how long a lost device is tried again
+    double busy_s = kBusyPatience_s;  // how long one that another program has is waited for
     std::function<void(double fraction, const std::string& state)> progress;
     std::function<void(const std::string& remark)> say;  // what people should know at once
 };

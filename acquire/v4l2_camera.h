@@ -18,7 +18,8 @@ std::vector<FoundCamera> find_v4l2_cameras();
 /// else by CameraPlan::controls. The stage is the camera's own controls (lab_subject ...) where it
 /// has them, else none.
 ///
-/// Throws  Error where it is no camera, DeviceLost where it is not there.
+/// Throws  Error where it is no camera, DeviceLost where it is not there, DeviceBusy (mostly not
+/// before it is configured) where another program has it.
 Bench open_v4l2(const std::string& path);
 
 }  // namespace nearfield::acquire

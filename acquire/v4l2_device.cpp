@@ -57,6 +57,8 @@ V4l2Device::V4l2Device(std::string path) : path_(std::move(path)) {
         const std::string why = system_error();
         if (is_gone(errno))
             throw DeviceLost{"cannot open camera", path_, "a device", why};
+        if (errno == EBUSY)
+            throw DeviceBusy{"cannot open camera", path_, "one that no other program has", why};
         throw Error{"cannot open camera", path_, "a device that may be opened (docs/bench.md)",
                     why};
     }
@@ -105,6 +107,8 @@ void V4l2Device::fail(const std::string& what) const {
     const std::string why = system_error();
     if (is_gone(errno))
         throw DeviceLost{"cannot " + what, path_, "the device to answer", why};
+    if (errno == EBUSY)
+        throw DeviceBusy{"cannot " + what, path_, "a camera that no other program has", why};
     throw Error{"cannot " + what, path_, "", why};
 }
 

@@ -37,7 +37,8 @@ struct V4l2Buffer {
 
 class V4l2Device {
   public:
-    /// Throws Error where the node is no camera that streams, DeviceLost where it is not there.
+    /// Throws Error where the node is no camera that streams, DeviceLost where it is not there,
+    /// DeviceBusy (as set, set_format and start do) where another program has it.
     explicit V4l2Device(std::string path);
     ~V4l2Device();
     V4l2Device(const V4l2Device&) = delete;

@@ -57,8 +57,8 @@ Plan complete_plan(const std::string& path) {
     Plan plan = capture::read_plan(path);
     if (!plan.bracket.is_auto)
         return plan;
-    acquire::Bench bench = open_bench(plan);
-    bench.camera->configure(plan.camera);
+    acquire::Bench bench = until_free([&plan] { return open_bench(plan); }, patience_aloud());
+    until_free([&] { bench.camera->configure(plan.camera); }, patience_aloud());
     plan.bracket.exposures_us = acquire::meter(bench, plan, should_stop);
     say(fmt::format("metered: {} exposures, {:.4g} ... {:.4g} us\n",
                     plan.bracket.exposures_us.size(), plan.bracket.exposures_us.front(),
@@ -127,6 +127,11 @@ acquire::Bench open_device(const std::string& device) {
     if (device.starts_with(kBench))
         return open_lab_bench(device.substr(kBench.size()));
     return device.starts_with("/dev/") ? acquire::open_v4l2(device) : acquire::open_aravis(device);
+}
+
+acquire::Patience patience_aloud() {
+    return {acquire::kBusyPatience_s, should_stop,
+            [](const std::string& remark) { say("device busy: " + remark + "\n"); }};
 }
 
 acquire::Bench open_bench(const Plan& plan) {

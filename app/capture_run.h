@@ -25,6 +25,9 @@ acquire::SessionResult run_capture(const CaptureOptions& options);
 /// bench by "bench:FILE.json", with the stage that it has itself.
 acquire::Bench open_device(const std::string& device);
 
+/// For acquire::until_free(): says on stderr that it waits for a busy device, and ends by Ctrl-C.
+acquire::Patience patience_aloud();
+
 /// The plan's camera, stage and instruments; a manual stage asks on the terminal.
 acquire::Bench open_bench(const capture::Plan& plan);
 

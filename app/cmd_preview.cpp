@@ -41,11 +41,13 @@ std::vector<unsigned char> as_rgb(const capture::Frame& frame) {
 
 void run(const PreviewCommand& command) {
     const Interrupt interrupt("\nnearfield: stopped while the camera did not answer\n");
-    acquire::Bench bench = open_device(command.camera.device);
-    bench.camera->configure(command.camera);
-    const double exposure_us = acquire::set_exposure_checked(*bench.camera, command.exposure_us);
+    acquire::Bench bench;
+    double exposure_us = 0;
     acquire::Exposed exposed;
     try {
+        bench = until_free([&] { return open_device(command.camera.device); }, patience_aloud());
+        until_free([&] { bench.camera->configure(command.camera); }, patience_aloud());
+        exposure_us = acquire::set_exposure_checked(*bench.camera, command.exposure_us);
         expose_whole(*bench.camera, Interrupt::requested);  // may still have the exposure of before
         exposed = expose_whole(*bench.camera, Interrupt::requested);
     } catch (const acquire::Stopped&) {

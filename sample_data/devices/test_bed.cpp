@@ -3,6 +3,8 @@
 
 #include "formats/files/error.h"
 
+#include <sys/ioctl.h>
+
 #include <utility>
 
 namespace nearfield::devices {
@@ -31,6 +33,29 @@ void TestBed::add(const std::string& description) {
     GError* failure = nullptr;
     umockdev_testbed_add_from_string(bed_.get(), description.c_str(), &failure);
     check(failure, "cannot add simulated device", description.substr(0, description.find('\n')));
+}
+
+Handle<UMockdevIoctlData> load_argument(UMockdevIoctlClient* client) {
+    const gsize bytes = _IOC_SIZE(umockdev_ioctl_client_get_request(client));
+    if (bytes == 0)
+        return nullptr;
+    return Handle<UMockdevIoctlData>(
+        umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, bytes, nullptr));
+}
+
+ClientRef::ClientRef(UMockdevIoctlClient* client)
+    : weak_(new GWeakRef, [](GWeakRef* weak) {
+          g_weak_ref_clear(weak);
+          delete weak;
+      }) {
+    g_weak_ref_init(weak_.get(), client);
+}
+
+Handle<UMockdevIoctlClient> ClientRef::get() const {
+    if (!weak_)
+        return nullptr;
+    return Handle<UMockdevIoctlClient>(
+        static_cast<UMockdevIoctlClient*>(g_weak_ref_get(weak_.get())));
 }
 
 IoctlNode::IoctlNode(TestBed& bed, const std::string& path, AnswerIoctl answer)

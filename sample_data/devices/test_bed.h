@@ -33,8 +33,29 @@ class TestBed {
 };
 
 /// Answers one ioctl on a node: completes the client's call. Called by umockdev's thread, one at a
-/// time for all devices. That a client closed the node or died is not told.
+/// time for all devices.
 using AnswerIoctl = std::function<void(UMockdevIoctlClient*)>;
+
+/// What a request's argument points to, loaded from the client; null where it points to nothing, or
+/// where the client was killed in the midst of its call. One that is killed a little later gives
+/// zeros.
+Handle<UMockdevIoctlData> load_argument(UMockdevIoctlClient* client);
+
+/// Somebody who opened a node, until the node is closed or they die. An address alone could be the
+/// next one's, at the same place in memory.
+class ClientRef {
+  public:
+    ClientRef() = default;
+    explicit ClientRef(UMockdevIoctlClient* client);
+
+    bool is(const UMockdevIoctlClient* client) const { return get().get() == client; }
+    bool is_gone() const { return get() == nullptr; }
+
+  private:
+    Handle<UMockdevIoctlClient> get() const;
+
+    std::shared_ptr<GWeakRef> weak_;
+};
 
 /// A node whose ioctls are answered by us, as long as it lives.
 class IoctlNode {

@@ -128,11 +128,11 @@ bool UsbDevice::try_complete(Transfer& transfer) {
         urb.actual_length = urb.status == 0 ? urb.buffer_length : 0;
         return true;
     }
-    const auto reply = function_.give(urb.endpoint, static_cast<std::size_t>(urb.buffer_length));
+    const auto reply = function_.give(urb.endpoint, transfer.bytes().size());
     if (!reply)
         return false;
     urb.status = reply->is_stall ? -EPIPE : 0;
-    std::copy(reply->bytes.begin(), reply->bytes.end(), transfer.buffer->data);
+    std::copy(reply->bytes.begin(), reply->bytes.end(), transfer.bytes().begin());
     urb.actual_length = static_cast<int>(reply->bytes.size());
     return true;
 }
@@ -150,13 +150,15 @@ void UsbDevice::complete_what_can() {
 UsbDevice::Result UsbDevice::submit(UMockdevIoctlClient* client, UMockdevIoctlData* data) {
     Transfer transfer;
     transfer.urb.reset(static_cast<UMockdevIoctlData*>(g_object_ref(data)));
-    transfer.client = client;
+    transfer.client = ClientRef(client);
     if (transfer.get().buffer_length > 0)
         transfer.buffer.reset(
             umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
                                         static_cast<gsize>(transfer.get().buffer_length), nullptr));
     if (!transfer.buffer && transfer.get().buffer_length > 0)
         return {-1, EFAULT};
+    if (transfer.get().type == USBDEVFS_URB_TYPE_CONTROL && transfer.bytes().size() < kSetupBytes)
+        return {-1, EINVAL};
     pending_.push_back(std::move(transfer));
     return {};
 }
@@ -166,7 +168,7 @@ UsbDevice::Result UsbDevice::discard(UMockdevIoctlClient* client) {
     const auto address =
         *reinterpret_cast<const unsigned long*>(umockdev_ioctl_client_get_arg(client)->data);
     const auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Transfer& one) {
-        return one.urb->client_addr == address && one.client == client;
+        return one.urb->client_addr == address && one.client.is(client);
     });
     if (found == pending_.end())
         return {-1, EINVAL};
@@ -179,8 +181,9 @@ UsbDevice::Result UsbDevice::discard(UMockdevIoctlClient* client) {
 
 UsbDevice::Result UsbDevice::reap(UMockdevIoctlClient* client, UMockdevIoctlData* answer) {
     complete_what_can();
-    const auto found = std::find_if(done_.begin(), done_.end(),
-                                    [client](const Transfer& one) { return one.client == client; });
+    const auto found = std::find_if(done_.begin(), done_.end(), [client](const Transfer& one) {
+        return one.client.is(client);
+    });
     if (found == done_.end())
         return {-1, is_gone_ ? ENODEV : EAGAIN};
     umockdev_ioctl_data_set_ptr(answer, 0, found->urb.get());
@@ -206,8 +209,6 @@ UsbDevice::Result UsbDevice::answer(UMockdevIoctlClient* client,
             return {};
         case USBDEVFS_CLAIMINTERFACE:
         case USBDEVFS_DISCONNECT_CLAIM:
-            drop_transfers_of_others(client);
-            return {};
         case USBDEVFS_RELEASEINTERFACE:
         case USBDEVFS_SETINTERFACE:
         case USBDEVFS_SETCONFIGURATION:
@@ -230,19 +231,19 @@ UsbDevice::Result UsbDevice::answer(UMockdevIoctlClient* client,
 
 void UsbDevice::on_ioctl(UMockdevIoctlClient* client) {
     const unsigned long request = umockdev_ioctl_client_get_request(client);
-    Handle<UMockdevIoctlData> data;
-    if (_IOC_SIZE(request) > 0 && request != USBDEVFS_DISCARDURB)
-        data.reset(umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0,
-                                               _IOC_SIZE(request), nullptr));
-    const Result result = answer(client, request, data.get());
+    const bool has_argument = _IOC_SIZE(request) > 0 && request != USBDEVFS_DISCARDURB;
+    const Handle<UMockdevIoctlData> data = has_argument ? load_argument(client) : nullptr;
+    drop_transfers_of_the_gone();
+    const Result result =
+        has_argument && !data ? Result{-1, EFAULT} : answer(client, request, data.get());
     umockdev_ioctl_client_complete(client, result.value, result.failure);
 }
 
 // What a client that died has left would take the answers to the next one's questions.
-void UsbDevice::drop_transfers_of_others(const UMockdevIoctlClient* client) {
-    const auto is_others = [client](const Transfer& one) { return one.client != client; };
-    pending_.erase(std::remove_if(pending_.begin(), pending_.end(), is_others), pending_.end());
-    done_.erase(std::remove_if(done_.begin(), done_.end(), is_others), done_.end());
+void UsbDevice::drop_transfers_of_the_gone() {
+    const auto is_of_gone = [](const Transfer& one) { return one.client.is_gone(); };
+    std::erase_if(pending_, is_of_gone);
+    std::erase_if(done_, is_of_gone);
 }
 
 }  // namespace nearfield::devices

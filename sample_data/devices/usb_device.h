@@ -58,11 +58,13 @@ class UsbDevice {
   private:
     struct Transfer {
         Handle<UMockdevIoctlData> urb, buffer;
-        const UMockdevIoctlClient* client = nullptr;
+        ClientRef client;
 
         usbdevfs_urb& get() const { return *reinterpret_cast<usbdevfs_urb*>(urb->data); }
         std::span<std::uint8_t> bytes() const {
-            return {buffer->data, static_cast<std::size_t>(get().buffer_length)};
+            if (!buffer)
+                return {};
+            return {buffer->data, static_cast<std::size_t>(buffer->data_len)};
         }
     };
     struct Result {
@@ -70,7 +72,7 @@ class UsbDevice {
     };
 
     void on_ioctl(UMockdevIoctlClient* client);
-    void drop_transfers_of_others(const UMockdevIoctlClient* client);
+    void drop_transfers_of_the_gone();
     Result submit(UMockdevIoctlClient* client, UMockdevIoctlData* urb);
     Result discard(UMockdevIoctlClient* client);
     Result reap(UMockdevIoctlClient* client, UMockdevIoctlData* answer);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -33,6 +34,13 @@ TestBed& with_node(TestBed& bed, int number) {
         "E: MINOR={0}\nA: name=nearfield virtual bench\\n\nA: index=0\\n\nA: dev=81:{0}\\n\n\n",
         number));
     return bed;
+}
+
+// What only who has the buffers may do, while there are any.
+bool is_owners(unsigned long request) {
+    constexpr std::array kOwners = {VIDIOC_S_FMT, VIDIOC_REQBUFS,  VIDIOC_QBUF,
+                                    VIDIOC_DQBUF, VIDIOC_STREAMON, VIDIOC_STREAMOFF};
+    return std::find(kOwners.begin(), kOwners.end(), request) != kOwners.end();
 }
 
 // Takes one from a count of coming misbehaviors.
@@ -64,27 +72,23 @@ V4l2Node::~V4l2Node() {
 
 void V4l2Node::on_ioctl(UMockdevIoctlClient* client) {
     const unsigned long request = umockdev_ioctl_client_get_request(client);
-    const std::size_t bytes = _IOC_SIZE(request);
-    Handle<UMockdevIoctlData> data(
-        bytes == 0 ? nullptr
-                   : umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, bytes,
-                                                 nullptr));
-    // A driver frees what a client leaves when it closes the node or dies, which is not told here:
-    // the next one takes it over.
-    if (faults.is_gone || (request == VIDIOC_S_FMT && client != owner_))
+    const Handle<UMockdevIoctlData> data = load_argument(client);
+    // A driver frees what a client leaves when it closes the node or dies.
+    if (faults.is_gone || owner_.is_gone())
         forget_client();
-    const int failure = faults.is_gone    ? ENODEV
-                        : data == nullptr ? ENOTTY
+    const int failure = faults.is_gone                                             ? ENODEV
+                        : data == nullptr                                          ? ENOTTY
+                        : buffers_ > 0 && !owner_.is(client) && is_owners(request) ? EBUSY
                         : request == VIDIOC_G_EXT_CTRLS || request == VIDIOC_S_EXT_CTRLS
                             ? controls_.answer_several(request, data.get())
                             : answer(request, data->data);
     if (request == VIDIOC_REQBUFS && failure == 0)
-        owner_ = client;
+        owner_ = ClientRef(client);
     umockdev_ioctl_client_complete(client, failure == 0 ? 0 : -1, failure);
 }
 
 void V4l2Node::forget_client() {
-    owner_ = nullptr;
+    owner_ = {};
     is_streaming_ = false;
     queued_.clear();
     unmap();

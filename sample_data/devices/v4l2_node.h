@@ -56,7 +56,7 @@ class V4l2Node {
     std::uint8_t* memory_ = nullptr;  // all buffers
     std::size_t memory_bytes_ = 0;
     unsigned buffers_ = 0;
-    const UMockdevIoctlClient* owner_ = nullptr;  // of the buffers
+    ClientRef owner_;  // of the buffers
     std::deque<unsigned> queued_;
     bool is_streaming_ = false;
     int empty_polls_left_ = 0;

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <map>
+#include <utility>
 
 namespace nearfield::devices {
 namespace {
@@ -80,6 +81,11 @@ class DeviceSession : public testing::Test {
             bench.stage = acquire::instrument_stage(*header.plan, std::move(bench.stage), never);
             return bench;
         };
+        options.say = [&](const std::string& remark) {
+            told_.push_back(remark);
+            if (when_told_)
+                std::exchange(when_told_, nullptr)();
+        };
         options.progress = [&](double, const std::string&) {
             if (++shots == kUnpluggedAt)
                 unplug();
@@ -106,6 +112,8 @@ class DeviceSession : public testing::Test {
     }
 
     static constexpr int kUnpluggedAt = 8;
+    std::function<void()> when_told_;
+    std::vector<std::string> told_;
     int reconnects_ = 0;
     VirtualLab lab_{linear_bench(), test_mounting(), true};
 };
@@ -129,6 +137,19 @@ TEST_F(DeviceSession, GoesOnWhenAV4l2CameraComesBack) {
     expect_survives(
         "/dev/video0", [&] { lab_.v4l2.faults.is_gone = true; },
         [&] { lab_.v4l2.faults.is_gone = false; });
+}
+
+// As after a kill: the dead program's buffers are still there.
+TEST_F(DeviceSession, BeginsWhenAnotherProgramHasLetGoOfTheCamera) {
+    const auto nothing = [] {};
+    const auto whole = capture_with("/dev/video0", nothing, nothing);
+    EXPECT_EQ(told_, std::vector<std::string>());
+    acquire::Bench other = acquire::open_v4l2("/dev/video0");
+    other.camera->configure({});
+    when_told_ = [&] { other = {}; };
+    EXPECT_EQ(capture_with("/dev/video0", nothing, nothing), whole);
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_EQ(told_[0].substr(0, 13), "device busy: ");
 }
 
 TEST_F(DeviceSession, GoesOnWhenAUsb3VisionCameraComesBack) {

@@ -11,8 +11,12 @@ namespace nearfield::devices {
 namespace {
 
 using acquire::Bench;
+using acquire::DeviceBusy;
 using acquire::DeviceLost;
 using acquire::IncompleteFrame;
+using acquire::Patience;
+using acquire::until_free;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class V4l2 : public testing::Test {
@@ -132,6 +136,35 @@ TEST_F(V4l2, UnpluggedItIsLostAndPluggedInItWorksAgain) {
     }
     lab_.v4l2.faults.is_gone = false;
     EXPECT_EQ(open().camera->expose(never).frame.size_px, kSensorPx);
+}
+
+// Another program streams from it when we come, and lets go when it is told that we wait.
+TEST_F(V4l2, ACameraThatAnotherProgramStillHasIsWaitedFor) {
+    auto other = std::make_unique<Bench>(open());
+    const Bench bench = acquire::open_v4l2("/dev/video0");
+    const auto configure = [&bench] { bench.camera->configure({}); };
+    EXPECT_THAT(complaint<DeviceBusy>(configure), HasSubstr("Device or resource busy"));
+    std::vector<std::string> said;
+    until_free(configure, Patience(acquire::kBusyPatience_s, never, [&](const std::string& remark) {
+                   said.push_back(remark);
+                   other.reset();
+               }));
+    EXPECT_EQ(bench.camera->expose(never).frame.size_px, kSensorPx);
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_THAT(said[0], AllOf(HasSubstr("/dev/video0"), HasSubstr("waiting up to 10 s")));
+}
+
+TEST_F(V4l2, ABusyCameraIsNotWaitedForEndlessly) {
+    const Bench other = open();
+    const Bench bench = acquire::open_v4l2("/dev/video0");
+    const auto configure = [&bench] { bench.camera->configure({}); };
+    const auto say_nothing = [](const std::string&) {};
+    EXPECT_THAT(complaint<DeviceBusy>([&] {
+                    until_free(configure, {0.1, never, say_nothing});
+                }),
+                HasSubstr("free within 0.1 s"));
+    EXPECT_THROW(until_free(configure, {60, [] { return true; }, say_nothing}), acquire::Stopped);
+    EXPECT_EQ(other.camera->expose(never).frame.size_px, kSensorPx);  // undisturbed
 }
 
 TEST_F(V4l2, TheCamerasOwnControlsAreAPersonsWork) {
