@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The virtual bench's noisy pictures of its boards give its planes back. Filter centers come from
-// its truth here, with noise.
+// All noisy pictures of the virtual bench's boards: their corners lie where they are, and give the
+// bench's planes back. Filter centers come from its truth here, with noise.
 #include "calibrate/geometry.h"
-#include "tests/calibrate/bench_views.h"
+#include "tests/calibrate/corner_errors.h"
 #include "tests/calibrate/simulated.h"
 
 #include <gtest/gtest.h>
@@ -31,21 +31,24 @@ capture::TargetPlane plane_of(sample_data::BoardPlane plane) {
     return capture::TargetPlane::Free;
 }
 
-Observations observed(const std::string& name, const std::string& mosaic) {
-    const Bench bench = test::target_bench(name);
-    const sample_data::Prepared prepared = sample_data::prepare(bench);
-    const Bench whole =
-        sample_data::read_bench(std::string(NEARFIELD_SOURCE_DIR) + "/sample_data/" + name);
+void expect_corners(const Bench& bench, const std::vector<std::vector<Corner>>& found) {
+    const test::CornerErrors errors = test::errors_of(bench, found);
+    std::cout << errors << "\n";
+    EXPECT_GE(errors.found, 0.98 * errors.visible);
+    EXPECT_LT(errors.rms_px(), 0.010);
+    EXPECT_LT(errors.worst_px, 0.035);
+    EXPECT_LT(glm::length(errors.mean_px()), 0.001);  // half a pixel wrong: 0.7
+}
+
+Observations observed(const Bench& whole, const std::vector<std::vector<Corner>>& found) {
     const sample_data::Places places = sample_data::make_places(whole);
     Observations seen;
-    seen.size_px = bench.camera.size_px;
+    seen.size_px = whole.camera.size_px;
     seen.grid = whole.filter.grid;
     seen.pitch_m = whole.filter.pitch_m;
-    for (std::size_t view = 0; view < bench.targets.views.size(); ++view)
-        seen.boards.push_back(
-            {static_cast<int>(view), plane_of(bench.targets.views[view].plane),
-             "view " + std::to_string(view),
-             find_board(test::exposed(*prepared, view), mosaic, test::board_of(bench))});
+    for (std::size_t view = 0; view < found.size(); ++view)
+        seen.boards.push_back({static_cast<int>(view), plane_of(whole.targets.views[view].plane),
+                               "view " + std::to_string(view), found[view]});
     for (const int row : {0, 3, 6}) {
         for (const int column : {0, 4, 8}) {
             const auto index = static_cast<std::size_t>(row * seen.grid.x + column);
@@ -72,7 +75,10 @@ double true_delta_m(const Bench& bench) {
 void expect_bench(const std::string& name, const std::string& mosaic) {
     const Bench bench =
         sample_data::read_bench(std::string(NEARFIELD_SOURCE_DIR) + "/sample_data/" + name);
-    const Geometry found = calibrate_geometry(observed(name, mosaic), {});
+    const Bench targets = test::target_bench(name);
+    const std::vector<std::vector<Corner>> corners = test::found_corners(targets, mosaic);
+    expect_corners(targets, corners);
+    const Geometry found = calibrate_geometry(observed(bench, corners), {});
     const std::vector<std::pair<std::string, double>> truth = {
         {"fx_px", bench.camera.fx_px},
         {"fy_px", bench.camera.fy_px},
