@@ -82,6 +82,10 @@ void add_environment_options(CLI::App& sub, RenderCommand& c) {
                "with");
     add_number(sub, "--environment-samples", around.samples, 1, render::kMostSamples, "N",
                "filtered samples of a glossy pixel");
+    add_number(
+        sub, "--environment-error", around.error_rel, 0.0, 0.999, "E",
+        "pixel by pixel as many of them, 8 to --environment-samples, as the relative error E "
+        "is estimated to call for; 0: all of them");
     add_choice(sub, "--environment-level", around.level,
                {{"fis", render::FilterLevel::Fis},
                 {"gems", render::FilterLevel::Gems},
@@ -99,6 +103,8 @@ void add_environment_options(CLI::App& sub, RenderCommand& c) {
                "of filtered: small bright parts of it that are summed one by one, at most");
     add_number(sub, "--environment-map-px", around.map_px, 1, 16384, "PX",
                "gl: a side of the shadow map of each direction");
+    add_number(sub, "--environment-filter-px", around.filter_px, 0, 16, "PX",
+               "gl: radius in which neighbors on the same surface share what they find hidden");
 }
 
 struct EffectName {

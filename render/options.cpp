@@ -83,9 +83,13 @@ void check(const RenderOptions& options) {
     if (options.sigma_measured && options.device == Device::Gl)
         refuse("sigma measured", "device cpu", "gl");
     check_range("environment samples", options.environment.samples, 1, kMostSamples);
+    if (!(options.environment.error_rel >= 0.0 && options.environment.error_rel < 1.0))
+        refuse("environment error", "0 (none) or more, and below 1",
+               fmt::format("{}", options.environment.error_rel));
     check_range("environment directions", options.environment.directions, 0, 1 << 14);
     check_range("environment suns", options.environment.suns, 0, 4096);
     check_range("environment map's side", options.environment.map_px, 1, kMaxExtentPx);
+    check_range("environment filter", options.environment.filter_px, 0, 16);
     check_range("threads", options.threads, 0, 4096, " (all)");
 }
 

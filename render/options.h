@@ -49,12 +49,16 @@ struct EnvironmentOptions {
     EnvironmentMethod method = EnvironmentMethod::Filtered;
     int samples = 40;  // filtered ones of a glossy pixel; Resampled and Reference draw
                        // RenderOptions::samples
+    /// Above 0: as many of them as this relative error calls for, pixel by pixel, 8 to `samples`
+    /// (formats/shared/sample_count.glsl.h); 0: `samples` everywhere.
+    double error_rel = 0.0;
     FilterLevel level = FilterLevel::Fis;
     bool is_anisotropic = false;  // several lookups along what a sample stands for
     bool is_shifted = false;      // a random shift a pixel: noise in place of structured error
     int directions = 16;  // in which filtered light asks for visibility, 0: none; of Lights: lamps
     int suns = 32;        // of Filtered: small bright parts summed apart, at most; 0: none
     int map_px = 512;     // a side of the maps that OpenGL draws of each direction
+    int filter_px = 0;    // OpenGL: radius in which neighbors' fits of what is hidden are averaged
 };
 
 /// What stands for all points of a cell of a lamp's U plane.

@@ -53,7 +53,8 @@ struct RenderReport {
     std::string device_reason;  // why this one, where the choice was left to the renderer
     int threads = 0;            // used
     std::uint64_t camera_rays = 0, shadow_rays = 0;
-    double multiply_adds = 0;  // of the windowed sums
+    std::uint64_t sky_samples = 0;  // filtered ones of the environment; counted by the CPU alone
+    double multiply_adds = 0;       // of the windowed sums
     int passes = 0;
     double samples =
         0;      // of a pixel and lamp, all passes; a mean where time cut the last one short

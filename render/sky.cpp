@@ -54,6 +54,12 @@ std::optional<Sky> load_sky(const Scene& scene,
     return sky;
 }
 
+bool counts_by_turns(const Plan& plan, const RenderOptions& options) {
+    return options.environment.error_rel > 0.0 && options.samples_per_pixel > 1 &&
+           options.environment.method == EnvironmentMethod::Filtered &&
+           has_pass(plan, PassId::EnvironmentSamples);
+}
+
 std::uint32_t word_of(FilterLevel level) {
     switch (level) {
         case FilterLevel::Gems:

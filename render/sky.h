@@ -42,6 +42,9 @@ std::optional<Sky> load_sky(const Scene& scene,
                             const EnvironmentOptions& options,
                             SkyFile& kept);
 
+/// Whether the number of filtered samples depends on how far surfaces turn within a pixel.
+bool counts_by_turns(const Plan& plan, const RenderOptions& options);
+
 // Shifts of filtered samples are independent of lamps' and lobes'.
 constexpr std::uint32_t kFilteredSeed = 0x51ed270bU;
 

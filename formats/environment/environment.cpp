@@ -42,7 +42,7 @@ double bytes(const Environment& environment) {
     for (const auto* maps : {&environment.maps, &environment.maps_with_suns})
         if (*maps)
             for (const ParaboloidMap::Level& level : (*maps)->levels)
-                count += 2 * level.sides.front().size() * sizeof(glm::vec3);
+                count += 2 * level.sides.front().size() * sizeof(glm::vec4);
     if (environment.table)
         count += (environment.table->column_cdf.size() + environment.table->row_cdf.size()) *
                  sizeof(float);

@@ -63,12 +63,12 @@ glm::vec3 texel_mean(const LatLong& picture, int side, glm::ivec2 texel, int sid
 ParaboloidMap::Level finest_level(const LatLong& picture, int side_px) {
     ParaboloidMap::Level level{side_px, {}};
     for (int side = 0; side < 2; ++side) {
-        std::vector<glm::vec3>& texels = level.sides.at(to_size(side));
+        std::vector<glm::vec4>& texels = level.sides.at(to_size(side));
         texels.resize(to_size(side_px) * to_size(side_px));
         tbb::parallel_for(0, side_px, [&](int row) {
             for (int column = 0; column < side_px; ++column)
                 texels[to_size(row) * to_size(side_px) + to_size(column)] =
-                    texel_mean(picture, side, {column, row}, side_px);
+                    glm::vec4(texel_mean(picture, side, {column, row}, side_px), 0.0F);
         });
     }
     return level;
@@ -89,7 +89,7 @@ void add_light(ParaboloidMap::Level& level, glm::vec3 direction, glm::dvec3 ligh
             side, (glm::vec2(texel) + 0.5F) / static_cast<float>(level.side_px));
         level.sides.at(
             to_size(side))[to_size(texel.y) * to_size(level.side_px) + to_size(texel.x)] +=
-            glm::vec3(light * (px * px / sr_per_area(side, middle)));
+            glm::vec4(light * (px * px / sr_per_area(side, middle)), 0.0);
     }
 }
 
@@ -111,13 +111,22 @@ void add_bright_part(const LatLong& picture, float brightest, ParaboloidMap::Lev
         }
 }
 
+/// What the finest level's texels show, squared: the mean of squares of coarser ones follows.
+void fill_squares(ParaboloidMap::Level& level) {
+    for (std::vector<glm::vec4>& texels : level.sides)
+        for (glm::vec4& texel : texels) {
+            const float luminance = shared::luminance709(glm::vec3(texel));
+            texel.w = luminance * luminance;
+        }
+}
+
 ParaboloidMap::Level next_level(const ParaboloidMap::Level& finer) {
     ParaboloidMap::Level level{finer.side_px / 2, {}};
     const std::size_t side_px = to_size(level.side_px), finer_px = to_size(finer.side_px);
     for (std::size_t side = 0; side < 2; ++side)
         for (std::size_t row = 0; row < side_px; ++row)
             for (std::size_t column = 0; column < side_px; ++column) {
-                const glm::vec3* corner =
+                const glm::vec4* corner =
                     finer.sides.at(side).data() + 2 * row * finer_px + 2 * column;
                 level.sides.at(side).push_back(
                     0.25F * (corner[0] + corner[1] + corner[finer_px] + corner[finer_px + 1]));
@@ -125,9 +134,9 @@ ParaboloidMap::Level next_level(const ParaboloidMap::Level& finer) {
     return level;
 }
 
-glm::vec3 on_level(const ParaboloidMap::Level& level, const shared::ParaboloidPoint& point) {
+glm::vec4 on_level(const ParaboloidMap::Level& level, const shared::ParaboloidPoint& point) {
     const shared::LinearTaps taps = shared::linear_taps(point.at, level.side_px);
-    const std::vector<glm::vec3>& texels = level.sides.at(to_size(point.side));
+    const std::vector<glm::vec4>& texels = level.sides.at(to_size(point.side));
     const auto texel = [&](int column, int row) {
         return texels[to_size(row) * to_size(level.side_px) + to_size(column)];
     };
@@ -159,19 +168,24 @@ ParaboloidMap make_paraboloid_map(const LatLong& picture, int side_px) {
     const float brightest = kBright * mean_luminance(picture);
     map.levels.push_back(finest_level(plain_part(picture, brightest), side_px));
     add_bright_part(picture, brightest, map.levels.front());
+    fill_squares(map.levels.front());
     while (map.levels.back().side_px > 1)
         map.levels.push_back(next_level(map.levels.back()));
     return map;
 }
 
-glm::vec3 filtered(const ParaboloidMap& map, glm::vec3 direction, float level) {
+glm::vec4 filtered_with_square(const ParaboloidMap& map, glm::vec3 direction, float level) {
     const shared::ParaboloidPoint point = shared::paraboloid_from_direction(direction);
     const float top = static_cast<float>(map.levels.size() - 1);
     const float clamped = std::clamp(level, 0.0F, top);
     const auto finer = static_cast<std::size_t>(clamped);
     const float part = clamped - static_cast<float>(finer);
-    const glm::vec3 value = on_level(map.levels[finer], point);
+    const glm::vec4 value = on_level(map.levels[finer], point);
     return part > 0.0F ? glm::mix(value, on_level(map.levels[finer + 1], point), part) : value;
+}
+
+glm::vec3 filtered(const ParaboloidMap& map, glm::vec3 direction, float level) {
+    return glm::vec3(filtered_with_square(map, direction, level));
 }
 
 }  // namespace nearfield::environment

@@ -12,7 +12,8 @@ namespace nearfield::environment {
 struct ParaboloidMap {
     struct Level {
         int side_px = 0;
-        std::array<std::vector<glm::vec3>, 2> sides;  // [z >= 0, z < 0][row of y][column of x]
+        // r g b, and the mean of luminance squared: [z >= 0, z < 0][row of y][column of x]
+        std::array<std::vector<glm::vec4>, 2> sides;
     };
     std::vector<Level> levels;  // the finest first, each half as wide as the one before, to 1 x 1
 
@@ -35,6 +36,9 @@ ParaboloidMap make_paraboloid_map(const LatLong& picture, int side_px = 0);
 
 /// The map's value at a direction of unit length: linear between texels, and between levels. level
 /// is clamped to those that there are.
+glm::vec4 filtered_with_square(const ParaboloidMap& map, glm::vec3 direction, float level);
+
+/// r g b of it.
 glm::vec3 filtered(const ParaboloidMap& map, glm::vec3 direction, float level);
 
 }  // namespace nearfield::environment

@@ -157,6 +157,7 @@ TileReport total_of(const std::vector<TileReport>& reports) {
     for (const TileReport& tile : reports) {
         total.camera_rays += tile.camera_rays;
         total.shadow_rays += tile.shadow_rays;
+        total.sky_samples += tile.sky_samples;
         total.multiply_adds += tile.multiply_adds;
         total.camera_s += tile.camera_s;
         total.sums_s += tile.sums_s;
@@ -172,6 +173,7 @@ TileReport total_of(const std::vector<TileReport>& reports) {
 void fill_report(const TileReport& total, double wall_s, RenderReport& report) {
     report.camera_rays = total.camera_rays;
     report.shadow_rays = total.shadow_rays;
+    report.sky_samples = total.sky_samples;
     report.multiply_adds = static_cast<double>(total.multiply_adds);
     const double spent_s = total.camera_s + total.sums_s + total.shading_s + total.sky_s;
     const double share = spent_s > 0.0 ? wall_s / spent_s : 0.0;

@@ -53,8 +53,8 @@ struct Scratch {
     std::vector<std::vector<float>> image_y;  // [slab][image]
     std::vector<model::SamplingView> views;   // [slab]
     std::vector<model::LightSample> samples;
-    std::uint64_t shadow_rays = 0;
-    double shadow_rays_s = 0, gloss_s = 0;  // spent; the lobe's own rays are gloss
+    std::uint64_t shadow_rays = 0, sky_samples = 0;  // the environment's, filtered
+    double shadow_rays_s = 0, gloss_s = 0;           // spent; the lobe's own rays are gloss
 };
 
 struct LampLight {

@@ -3,8 +3,10 @@
 
 #include "formats/shared/brdf_weight.glsl.h"
 #include "formats/shared/filtered_samples.glsl.h"
+#include "formats/shared/sample_count.glsl.h"
 #include "formats/shared/spherical_harmonics.glsl.h"
 #include "formats/shared/suns.glsl.h"
+#include "formats/shared/tonemap.glsl.h"
 #include "render/cpu/sky_filter.h"
 
 #include <algorithm>
@@ -48,9 +50,42 @@ float visible_share(const Hidden& hidden, glm::vec3 direction, float cosine) {
     return hidden ? visible_share(*hidden, direction, cosine) : 1.0F;
 }
 
+/// The lobe's mean of one of the maps, roughly, and that of luminance squared.
+glm::vec4 mean_over_lobe(const environment::ParaboloidMap& map, glm::vec3 axis, float lobe_sr) {
+    const float texels =
+        shared::texels_per_sample(static_cast<float>(map.texels()), 1.0F, 1.0F / lobe_sr,
+                                  shared::paraboloid_sr_per_area(axis));
+    return environment::filtered_with_square(map, axis,
+                                             shared::filter_level(shared::kLevelMfis, texels));
+}
+
+/// How many filtered samples the options call for. share: of suns, in maps.
+int sample_count(const SkyQuery& query, float share) {
+    const EnvironmentOptions& options = query.options;
+    if (!(options.error_rel > 0.0))
+        return options.samples;
+    const environment::Environment& around = *query.sky.environment;
+    const glm::vec3 to_viewer = to_viewer_local(query.shade);
+    const float lobe_sr = shared::brdf_lobe_solid_angle_sr(query.shade.brdf, to_viewer);
+    if (!(lobe_sr > 0.0F))
+        return options.samples;
+    const glm::vec3 axis = query.sky.local(shared::world_from_local(
+        query.shade.frame, shared::brdf_lobe_axis(query.shade.brdf, to_viewer)));
+    glm::vec4 mean(0.0F);
+    if (share < 1.0F)
+        mean += (1.0F - share) * mean_over_lobe(*around.maps, axis, lobe_sr);
+    if (share > 0.0F)
+        mean += share * mean_over_lobe(*around.maps_with_suns, axis, lobe_sr);
+    return shared::filtered_sample_count(
+        shared::relative_variance(shared::luminance709(glm::vec3(mean)), mean.w),
+        shared::independent_looks(query.turn_rad, lobe_sr, query.camera_samples),
+        static_cast<float>(options.error_rel), options.samples);
+}
+
 /// What a lobe reflects of one of the maps: the mean over its samples.
 glm::vec3 filtered_gloss(const SkyQuery& query,
                          const environment::ParaboloidMap& map,
+                         int samples,
                          const Hidden& hidden) {
     const ShadeQuery& shade = query.shade;
     const SkyLobe lobe{map, shade.brdf, shade.frame, query.sky.environment_from_world,
@@ -58,7 +93,7 @@ glm::vec3 filtered_gloss(const SkyQuery& query,
     const glm::vec2 shift = query.options.is_shifted
                                 ? shift_of_set(shade, 0, shade.seed ^ kFilteredSeed)
                                 : glm::vec2(0.0F);
-    const auto count = static_cast<shared::uint>(query.options.samples);
+    const auto count = static_cast<shared::uint>(samples);
     glm::vec3 sum(0.0F);
     for (shared::uint i = 0; i < count; ++i) {
         const glm::vec2 xi = glm::fract(shared::hammersley_point(i, count) + shift);
@@ -66,7 +101,7 @@ glm::vec3 filtered_gloss(const SkyQuery& query,
         const float density = shared::brdf_lobe_density(shade.brdf, to_light, lobe.to_viewer);
         if (!(density > 0.0F))
             continue;
-        sum += filtered_light(lobe, query.options, xi, to_light, density) *
+        sum += filtered_light(lobe, query.options, samples, xi, to_light, density) *
                shared::brdf_lobe_weight(shade.brdf, to_light, lobe.to_viewer) *
                visible_share(hidden, lobe.in_environment(to_light), to_light.z);
     }
@@ -94,13 +129,18 @@ LampLight sun_light(const SkyQuery& query, const Hidden& hidden) {
 
 /// What a lobe reflects of the sky without suns, and of these what the maps show of them. share: of
 /// suns, in maps.
-glm::vec3 filtered_gloss(const SkyQuery& query, float share, const Hidden& hidden) {
+glm::vec3 filtered_gloss(const SkyQuery& query,
+                         float share,
+                         const Hidden& hidden,
+                         Scratch& scratch) {
     const environment::Environment& around = *query.sky.environment;
+    const int samples = sample_count(query, share);
+    scratch.sky_samples += static_cast<std::uint64_t>(samples);
     glm::vec3 sum(0.0F);
     if (share < 1.0F)
-        sum += (1.0F - share) * filtered_gloss(query, *around.maps, hidden);
+        sum += (1.0F - share) * filtered_gloss(query, *around.maps, samples, hidden);
     if (share > 0.0F)
-        sum += share * filtered_gloss(query, *around.maps_with_suns, hidden);
+        sum += share * filtered_gloss(query, *around.maps_with_suns, samples, hidden);
     return sum;
 }
 
@@ -144,8 +184,8 @@ LampLight shade_sky_filtered(const SkyQuery& query, Scratch& scratch) {
                                                    query.shade.brdf, to_viewer_local(query.shade)),
                                                around.suns->radius_rad)
                         : 0.0F;
-        light.radiance += query.sky.intensity *
-                          (filtered_gloss(query, share, hidden) + (1.0F - share) * suns.radiance);
+        light.radiance += query.sky.intensity * (filtered_gloss(query, share, hidden, scratch) +
+                                                 (1.0F - share) * suns.radiance);
     }
     return light;
 }

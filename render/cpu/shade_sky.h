@@ -13,6 +13,8 @@ struct SkyQuery {
     const Tracer& tracer;
     const ShadeQuery& shade;
     const EnvironmentOptions& options;
+    float turn_rad = 0.0F;        // of the normal across the pixel
+    float camera_samples = 1.0F;  // of the pixel
 };
 
 /// Diffuse part by spherical harmonics, lobe by filtered samples (filtered_samples.glsl.h), the

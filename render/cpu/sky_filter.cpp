@@ -31,13 +31,14 @@ glm::vec3 anisotropic(const SkyLobe& lobe, int count, glm::vec2 xi, glm::vec3 di
 
 glm::vec3 filtered_light(const SkyLobe& lobe,
                          const EnvironmentOptions& options,
+                         int samples,
                          glm::vec2 xi,
                          glm::vec3 to_light,
                          float density) {
     const glm::vec3 direction = lobe.in_environment(to_light);
     if (options.is_anisotropic)
-        return anisotropic(lobe, options.samples, xi, direction);
-    const auto count = static_cast<float>(options.samples);
+        return anisotropic(lobe, samples, xi, direction);
+    const auto count = static_cast<float>(samples);
     const float around = options.level == FilterLevel::Mfis
                              ? 1.0F / (count * shared::mfis_solid_angle_sr(lobe.brdf, to_light,
                                                                            lobe.to_viewer, count))

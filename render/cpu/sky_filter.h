@@ -24,10 +24,11 @@ struct SkyLobe {
     }
 };
 
-/// The environment's mean over what one of options.samples directions stands for. xi: the point of
+/// The environment's mean over what one of `samples` directions stands for. xi: the point of
 /// [0, 1)^2 that drew to_light, whose density is > 0.
 glm::vec3 filtered_light(const SkyLobe& lobe,
                          const EnvironmentOptions& options,
+                         int samples,
                          glm::vec2 xi,
                          glm::vec3 to_light,
                          float density);

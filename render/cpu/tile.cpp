@@ -4,7 +4,7 @@
 #include "formats/shared/rng.glsl.h"
 #include "formats/shared/tonemap.glsl.h"
 #include "render/cpu/lap.h"
-#include "render/cpu/shade_sky.h"
+#include "render/cpu/tile_block.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,43 +16,9 @@ namespace {
 // read of an image, 16 receivers' weights included, stays in the first-level cache.
 constexpr int kBlockPx = 4;
 
-void add(Layer& layer, std::size_t pixel, glm::vec3 value) {
-    for (std::size_t c = 0; c < 3; ++c)
-        layer.values[3 * pixel + c] += value[static_cast<int>(c)];
-}
-
-/// A camera ray that met something.
-struct Sample {
-    glm::ivec2 pixel{0};
-    std::size_t index = 0;  // of the pixel in the picture
-    glm::dvec3 direction{0.0};
-    const shared::Brdf* brdf = nullptr;
-    shared::SurfaceFrame frame;
-};
-
-/// What a block's steps hand each other; kept from block to block for its memory.
-struct Block {
-    std::vector<Sample> samples;
-    std::vector<Hit> hits;  // [sample]
-    LightSums sums;
-    Scratch scratch;
-};
-
 std::size_t index_of(const Frame& frame, glm::ivec2 pixel) {
     return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(frame.picture.size_px.x) +
            static_cast<std::size_t>(pixel.x);
-}
-
-glm::vec3 radiance_from_sky(const Frame& frame, glm::dvec3 direction) {
-    return frame.sky != nullptr ? radiance_from(*frame.sky, glm::vec3(direction)) : glm::vec3(0.0F);
-}
-
-/// Adds radiance of the environment to the picture and to its own layer.
-void add_sky(const Frame& frame, std::size_t pixel, glm::vec3 radiance, float share) {
-    if (frame.sky == nullptr)
-        return;
-    add(frame.picture.layers[kRadiance], pixel, radiance * share);
-    add(frame.picture.layers[*frame.environment_layer], pixel, radiance * share);
 }
 
 /// One camera ray a pixel, the same ones in every pass, and in the first the layers that need no
@@ -83,8 +49,8 @@ void trace_camera(const Frame& frame,
                            film_position_px({x, y}, stratum, frame.strata, random.x, random.y));
             const std::optional<Hit> hit = frame.tracer.trace(origin, sample.direction);
             if (!hit) {
-                add_sky(frame, sample.index, radiance_from_sky(frame, sample.direction),
-                        pass.weight / static_cast<float>(strata));
+                add_sky_past(frame, sample.index, sample.direction,
+                             pass.weight / static_cast<float>(strata));
                 continue;
             }
             sample.brdf = &frame.brdfs[static_cast<std::size_t>(hit->material)];
@@ -94,12 +60,12 @@ void trace_camera(const Frame& frame,
             block.hits.push_back(*hit);
             if (pass.index != 0)
                 continue;
-            add(layers[kAlbedo], sample.index,
-                sample.brdf->diffuse * (1.0F / static_cast<float>(strata)));
+            add_rgb(layers[kAlbedo], sample.index,
+                    sample.brdf->diffuse * (1.0F / static_cast<float>(strata)));
             if (stratum == strata / 2) {  // depths and normals have no meaningful mean
                 layers[kDepth].values[sample.index] =
                     static_cast<float>(glm::dot(hit->position_world_m - origin, forward));
-                add(layers[kNormal], sample.index, glm::vec3(hit->shading_normal));
+                add_rgb(layers[kNormal], sample.index, glm::vec3(hit->shading_normal));
             }
         }
 }
@@ -149,24 +115,6 @@ LampLight shade(const Frame& frame,
     return light;
 }
 
-ShadeQuery query_of(const Frame& frame,
-                    const Pass& pass,
-                    const Block& block,
-                    std::size_t k,
-                    std::uint32_t first_set) {
-    const Sample& sample = block.samples[k];
-    return {block.hits[k],
-            -sample.direction,
-            *sample.brdf,
-            sample.frame,
-            sets_of(frame.options, pass.samples),
-            glm::uvec2(sample.pixel),
-            first_set,
-            frame.options.seed,
-            frame.options.shift,
-            true};
-}
-
 /// Adds one lamp's light to the layers, from sums that are ready.
 void shade_block(
     const Frame& frame, const Pass& pass, int stratum, std::size_t lamp, Block& block) {
@@ -185,9 +133,9 @@ void shade_block(
         ShadeQuery query = query_of(frame, pass, block, k, first_set);
         query.has_shadows = frame.plan.lamps[lamp].has_shadows;
         const LampLight light = shade(frame, query, pass.q, frame.lamps.lamps[lamp], k, block);
-        add(layers[kRadiance], sample.index, light.radiance * share);
-        add(layers[kIrradiance], sample.index, light.irradiance * share);
-        add(layers[kFirstLamp + lamp], sample.index, light.radiance * share);
+        add_rgb(layers[kRadiance], sample.index, light.radiance * share);
+        add_rgb(layers[kIrradiance], sample.index, light.irradiance * share);
+        add_rgb(layers[kFirstLamp + lamp], sample.index, light.radiance * share);
         layers[kSigma].values[sample.index] += light.variance_y * share * share;
         if (frame.bias_layer)
             layers[*frame.bias_layer].values[sample.index] +=
@@ -196,38 +144,6 @@ void shade_block(
         // are, an upper bound where files differ.
         if (frame.measured_layer)
             layers[*frame.measured_layer].values[sample.index] += light.sigma_measured_y * share;
-    }
-}
-
-LampLight shade_sky(const SkyQuery& query, Scratch& scratch) {
-    switch (query.options.method) {
-        case EnvironmentMethod::Lights:
-            return shade_sky_lights(query, scratch);
-        case EnvironmentMethod::Resampled:
-            return shade_sky_resampled(query, scratch);
-        case EnvironmentMethod::Reference:
-            return shade_sky_reference(query, scratch);
-        default:
-            return shade_sky_filtered(query, scratch);
-    }
-}
-
-/// Adds the environment's light to the layers.
-void shade_sky_block(const Frame& frame, const Pass& pass, int stratum, Block& block) {
-    const int strata = frame.strata * frame.strata;
-    const auto first_set =
-        (pass.index * static_cast<std::uint32_t>(strata) + static_cast<std::uint32_t>(stratum)) *
-        static_cast<std::uint32_t>(kMostSets);
-    const float share = pass.weight / static_cast<float>(strata);
-    for (std::size_t k = 0; k < block.samples.size(); ++k) {
-        ShadeQuery query = query_of(frame, pass, block, k, first_set);
-        query.has_shadows = hides_sky(frame.plan);
-        const LampLight light =
-            shade_sky({*frame.sky, frame.tracer, query, frame.options.environment}, block.scratch);
-        const std::size_t index = block.samples[k].index;
-        add_sky(frame, index, light.radiance, share);
-        add(frame.picture.layers[kIrradiance], index, light.irradiance * share);
-        frame.picture.layers[kSigma].values[index] += light.variance_y * share * share;
     }
 }
 
@@ -264,6 +180,29 @@ void render_block(const Frame& frame,
 
 }  // namespace
 
+void add_rgb(Layer& layer, std::size_t pixel, glm::vec3 value) {
+    for (std::size_t c = 0; c < 3; ++c)
+        layer.values[3 * pixel + c] += value[static_cast<int>(c)];
+}
+
+ShadeQuery query_of(const Frame& frame,
+                    const Pass& pass,
+                    const Block& block,
+                    std::size_t k,
+                    std::uint32_t first_set) {
+    const Sample& sample = block.samples[k];
+    return {block.hits[k],
+            -sample.direction,
+            *sample.brdf,
+            sample.frame,
+            sets_of(frame.options, pass.samples),
+            glm::uvec2(sample.pixel),
+            first_set,
+            frame.options.seed,
+            frame.options.shift,
+            true};
+}
+
 void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileReport& report) {
     const glm::ivec2 last = glm::min(first + kTilePx, frame.picture.size_px);
     Block block;
@@ -272,6 +211,7 @@ void render_tile(const Frame& frame, const Pass& pass, glm::ivec2 first, TileRep
             render_block(frame, pass, {x, y}, glm::min(glm::ivec2(x, y) + kBlockPx, last), block,
                          report);
     report.shadow_rays += block.scratch.shadow_rays;
+    report.sky_samples += block.scratch.sky_samples;
     report.shadow_rays_s += block.scratch.shadow_rays_s;
     report.gloss_s += block.scratch.gloss_s;
 }

@@ -50,7 +50,7 @@ struct TileReport {
     double shading_s = 0;  // all that follows, of which:
     double shadow_rays_s = 0, gloss_s = 0;
     double sky_s = 0;  // light of the environment, its rays included
-    std::uint64_t camera_rays = 0, shadow_rays = 0, multiply_adds = 0;
+    std::uint64_t camera_rays = 0, shadow_rays = 0, sky_samples = 0, multiply_adds = 0;
 };
 
 /// Adds one pass of the pixels from `first` to `first + kTilePx`; a first pass (index 0) also

@@ -2,6 +2,7 @@
 #include "render/cpu/tracer.h"
 
 #include "formats/files/error.h"
+#include "formats/shared/sample_count.glsl.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -198,7 +199,28 @@ std::optional<Hit> Tracer::trace(glm::dvec3 origin_world_m, glm::dvec3 direction
         kUnits * std::max({largest(hit.position_world_m), largest(a - hit.position_world_m),
                            largest(b - hit.position_world_m), largest(c - hit.position_world_m)});
     hit.material = mesh.material;
+    hit.instance = query.hit.instID[0];
+    hit.triangle = query.hit.primID;
     return hit;
+}
+
+double Tracer::curvature(const Hit& hit) const {
+    const Instance& instance = scene_.instances[hit.instance];
+    const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(instance.mesh)];
+    if (mesh.normals.empty())
+        return 0.0;
+    const glm::uvec3 triangle = mesh.triangles[hit.triangle];
+    const auto normal = [&](int corner) {
+        return glm::vec3(glm::normalize(normal_from_mesh_[hit.instance] *
+                                        glm::dvec3(mesh.normals[triangle[corner]])));
+    };
+    const auto edge_m = [&](int from, int to) {
+        return glm::vec3(
+            glm::dmat3(instance.world_from_mesh) *
+            glm::dvec3(mesh.positions_m[triangle[to]] - mesh.positions_m[triangle[from]]));
+    };
+    return static_cast<double>(
+        shared::triangle_curvature(edge_m(0, 1), edge_m(1, 2), normal(0), normal(1), normal(2)));
 }
 
 bool Tracer::is_occluded(glm::dvec3 from_world_m, glm::dvec3 to_world_m, std::uint32_t mask) const {

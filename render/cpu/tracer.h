@@ -5,6 +5,7 @@
 
 #include <glm/glm.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ struct Hit {
     glm::dvec3 tangent{0.0};           // interpolated, of any length; 0: the mesh has none
     double offset_m = 0;  // how far rays that leave must start above the surface to miss it
     int material = 0;
+    std::size_t instance = 0, triangle = 0;  // of the scene, of its mesh
 };
 
 /// The scene's triangles, ready for rays (Embree). Safe to use from many threads.
@@ -33,6 +35,10 @@ class Tracer {
 
     /// The nearest triangle along a ray of any mask. direction: unit length.
     std::optional<Hit> trace(glm::dvec3 origin_world_m, glm::dvec3 direction_world) const;
+
+    /// How far the normals of a hit's triangle turn by length, in 1/m (sample_count.glsl.h); 0
+    /// where the mesh has no normals.
+    double curvature(const Hit& hit) const;
 
     /// Whether anything that `mask` meets lies between two points. The end itself does not count.
     bool is_occluded(glm::dvec3 from_world_m, glm::dvec3 to_world_m, std::uint32_t mask) const;

@@ -144,17 +144,18 @@ struct Session::Kept {
         scene_buffers->materials = upload_materials(device, brdfs);
     }
 
-    Target& use_target(glm::ivec2 size_px, std::size_t lamps, bool has_bias) {
+    Target& use_target(glm::ivec2 size_px, std::size_t lamps, bool has_bias, bool has_turns) {
         return use(
             targets, kMostTargets,
             [&](const Target& one) {
                 return one.film.size_px == size_px && one.film.of_lamp.size() == lamps &&
-                       one.has_bias == has_bias &&
+                       one.has_bias == has_bias && one.surfaces.surfaces.has_turns == has_turns &&
                        one.surfaces.has_tangents == scene_buffers->has_tangents;
             },
             [&] {
                 const std::uint64_t before = device.allocated_bytes();
-                SurfacePass surfaces = make_surface_pass(device, *scene_buffers, size_px);
+                SurfacePass surfaces =
+                    make_surface_pass(device, *scene_buffers, size_px, has_turns);
                 const std::uint64_t bytes = device.allocated_bytes() - before;
                 return Target{std::move(surfaces), make_film(device, size_px, lamps, has_bias),
                               has_bias, bytes};
@@ -218,7 +219,8 @@ Rendered Session::render(const Scene& scene,
     upload_lamps(device, lamps, plan, options, kept_->on_card);
     report.lamp_bytes = static_cast<double>(kept_->on_card.sum_bytes + kept_->on_card.table_bytes);
     const std::size_t lights = lamps.lamps.size() + (opening.sky ? 1 : 0);
-    Target& target = kept_->use_target(opening.size_px, lights, has_bias);
+    Target& target =
+        kept_->use_target(opening.size_px, lights, has_bias, counts_by_turns(plan, options));
     clear(target.film);
     GlFrame frame{scene,
                   options,

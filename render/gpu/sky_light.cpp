@@ -13,7 +13,8 @@ namespace nearfield::render::gpu {
 namespace {
 
 // Bindings of sky.glsl, sky_samples.comp and sky_visibility.comp.
-constexpr GLuint kHidden = 7, kShift = 6, kHiddenImage = 2;
+constexpr GLuint kHidden = 7, kShift = 6, kHiddenImage = 2, kFound = 9;
+constexpr GLint kRadius = 0;
 
 SkyVariant variant_of(const Plan& plan, const RenderOptions& options, bool has_tangents) {
     SkyVariant variant;
@@ -26,6 +27,9 @@ SkyVariant variant_of(const Plan& plan, const RenderOptions& options, bool has_t
     variant.is_anisotropic = options.environment.is_anisotropic;
     variant.is_shifted = options.environment.is_shifted && variant.has_samples;
     variant.level = options.environment.level;
+    variant.is_smoothed = options.environment.filter_px > 0;
+    variant.has_counts = options.environment.error_rel > 0.0;
+    variant.has_turns = counts_by_turns(plan, options);
     return variant;
 }
 
@@ -39,6 +43,10 @@ Defines defines_of(const SkyVariant& variant) {
         defines.emplace_back("IS_ANISOTROPIC");
     if (variant.is_shifted)
         defines.emplace_back("HAS_SHIFT");
+    if (variant.has_counts)
+        defines.emplace_back("HAS_COUNTS");
+    if (variant.has_turns)
+        defines.emplace_back("HAS_TURNS");
     return defines;
 }
 
@@ -60,6 +68,11 @@ SkyPasses make_passes(Device& device, const SkyVariant& variant, glm::ivec2 size
         passes.visibility = link_compute("render/shaders/sky_visibility.comp", {});
         passes.hidden =
             make_texture_array(device, "what of the environment is hidden", GL_RGBA32F, size_px, 4);
+        if (variant.is_smoothed) {
+            passes.smoothing = link_compute("render/shaders/sky_smoothing.comp", {});
+            passes.found = make_texture_array(device, "what is hidden, before it is smoothed",
+                                              GL_RGBA32F, size_px, 4);
+        }
     }
     if (variant.is_shifted)
         passes.shift = make_texture(device, "shifts of samples", GL_RG32F, size_px);
@@ -105,8 +118,7 @@ void prepare_sky(Device& device,
         throw Error{"cannot render by OpenGL", "environment",
                     "--environment filtered or lights: rays are the CPU's",
                     name_of(options.environment.method)};
-    device.run_pass("environment",
-                    [&] { upload_sky(device, sky, options.environment.samples, kept.on_card); });
+    device.run_pass("environment", [&] { upload_sky(device, sky, options, kept.on_card); });
     const SkyVariant variant = variant_of(plan, options, scene.has_tangents);
     if (!kept.passes.past || !(kept.passes.variant == variant) || kept.passes.size_px != size_px)
         kept.passes = make_passes(device, variant, size_px);
@@ -126,9 +138,18 @@ void add_sky_light(Device& device,
     const SkyPasses& passes = kept.passes;
     run(device, "environment", passes.past, kept);
     if (passes.visibility) {
-        glBindImageTexture(kHiddenImage, passes.hidden.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
-                           GL_RGBA32F);
+        const auto write_to = [](const Texture& texture) {
+            glBindImageTexture(kHiddenImage, texture.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
+                               GL_RGBA32F);
+        };
+        write_to(passes.smoothing ? passes.found : passes.hidden);
         run(device, "sky maps", passes.visibility, kept);
+        if (passes.smoothing) {
+            write_to(passes.hidden);
+            glProgramUniform1i(passes.smoothing.id(), kRadius, options.environment.filter_px);
+            glBindTextureUnit(kFound, passes.found.id());
+            run(device, "sky maps", passes.smoothing, kept);
+        }
     }
     if (passes.irradiance)
         run(device, "sky irradiance", passes.irradiance, kept);

@@ -19,6 +19,8 @@ namespace nearfield::render::gpu {
 struct SkyVariant {
     bool has_irradiance = false, has_samples = false, has_lights = false, has_shadows = false;
     bool has_tangents = false, is_anisotropic = false, is_shifted = false;
+    bool is_smoothed = false;                    // what is hidden, over neighbors
+    bool has_counts = false, has_turns = false;  // sample_count.glsl.h; HAS_TURNS of surfaces
     FilterLevel level = FilterLevel::Fis;
 
     bool operator==(const SkyVariant&) const = default;
@@ -27,10 +29,12 @@ struct SkyVariant {
 /// Programs and targets of the plan's passes, and none of others.
 struct SkyPasses {
     SkyVariant variant;
-    Program past, irradiance, samples, lights, visibility;
+    Program past, irradiance, samples, lights, visibility, smoothing;
     glm::ivec2 size_px{0};
-    Texture hidden;  // RGBA32F array of 4: 16 coefficients a pixel; only with shadows
-    Texture shift;   // RG32F: only where samples are shifted
+    // RGBA32F arrays of 4: 16 coefficients a pixel; only with shadows. `found` before it is
+    // smoothed.
+    Texture hidden, found;
+    Texture shift;  // RG32F: only where samples are shifted
     std::uint64_t bytes = 0;
 };
 

@@ -45,8 +45,7 @@ Texture upload_maps(Device& device, const environment::ParaboloidMap& map) {
     for (std::size_t level = 0; level < map.levels.size(); ++level)
         for (std::size_t side = 0; side < 2; ++side)
             upload_level(texture, static_cast<int>(level), map.levels[level].side_px,
-                         static_cast<int>(side),
-                         &with_alpha(map.levels[level].sides.at(side)).front()[0]);
+                         static_cast<int>(side), &map.levels[level].sides.at(side).front()[0]);
     return texture;
 }
 
@@ -69,11 +68,12 @@ void upload_directions(Device& device, const environment::VisibilityFit& fit, Sk
     on_card.fit = make_buffer_of(device, fit.fit, "the environment's directions");
 }
 
-SkyBlock block_of(const Sky& sky, int samples) {
-    SkyBlock block{glm::mat4(sky.environment_from_world),
-                   {},
-                   glm::vec4(sky.intensity, 0.0F, 0.0F, 0.0F),
-                   glm::ivec4(samples, 0, 0, 0)};
+SkyBlock block_of(const Sky& sky, const RenderOptions& options) {
+    SkyBlock block{
+        glm::mat4(sky.environment_from_world),
+        {},
+        glm::vec4(sky.intensity, 0.0F, static_cast<float>(options.environment.error_rel), 0.0F),
+        glm::ivec4(options.environment.samples, 0, 0, options.samples_per_pixel)};
     if (const auto& harmonics = sky.environment->harmonics)
         std::transform(harmonics->radiance.begin(), harmonics->radiance.end(),
                        block.harmonics.begin(), [](glm::vec3 rgb) { return glm::vec4(rgb, 0.0F); });
@@ -88,7 +88,7 @@ SkyBlock block_of(const Sky& sky, int samples) {
 
 }  // namespace
 
-void upload_sky(Device& device, const Sky& sky, int samples, SkyOnCard& on_card) {
+void upload_sky(Device& device, const Sky& sky, const RenderOptions& options, SkyOnCard& on_card) {
     if (on_card.environment != sky.environment) {
         const std::uint64_t before = device.allocated_bytes();
         on_card = {};
@@ -104,7 +104,7 @@ void upload_sky(Device& device, const Sky& sky, int samples, SkyOnCard& on_card)
         on_card.environment = sky.environment;
         on_card.bytes = device.allocated_bytes() - before;
     }
-    const SkyBlock block = block_of(sky, samples);
+    const SkyBlock block = block_of(sky, options);
     glNamedBufferSubData(on_card.block.id(), 0, sizeof(block), &block);
     device.check("upload of the environment");
 }

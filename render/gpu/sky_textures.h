@@ -8,6 +8,7 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/objects.h"
+#include "render/options.h"
 #include "render/sky.h"
 
 #include <cstdint>
@@ -29,7 +30,7 @@ struct SkyOnCard {
 
 /// Uploads the environment unless it is there, and where it is turned to. Throws Error where it
 /// passes the device's limits.
-void upload_sky(Device& device, const Sky& sky, int samples, SkyOnCard& on_card);
+void upload_sky(Device& device, const Sky& sky, const RenderOptions& options, SkyOnCard& on_card);
 
 /// Binds what sky.glsl and the shaders that include it read, but shadows.
 void bind_sky(const SkyOnCard& on_card);

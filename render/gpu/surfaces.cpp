@@ -23,7 +23,9 @@ constexpr float kNearest_m = 1e-6F;
 
 // Locations in gbuffer.vert and gbuffer.comp.
 constexpr GLint kEye = 0, kTurn = 1, kScale = 2, kShift = 3, kNear = 4;
-constexpr GLint kForward = 2;
+constexpr GLint kForward = 2, kPixel = 3;
+// Of sky_samples.comp, which alone reads it; no lamp's texture is bound there.
+constexpr GLuint kTurnTexture = 15;
 
 Buffer make_frame(Device& device, glm::dvec3 eye_world_m, glm::ivec2 size_px) {
     const FrameBlock block{glm::vec4(glm::vec3(eye_world_m), 1.0F), {size_px, 0, 0}};
@@ -113,6 +115,10 @@ void resolve_pixels(const SceneBuffers& scene,
     glProgramUniform3dv(program, kEye, 1, &lens.eye_world_m[0]);
     glProgramUniformMatrix3dv(program, kTurn, 1, GL_FALSE, &world_from_pixel[0][0]);
     glProgramUniform3fv(program, kForward, 1, &forward[0]);
+    if (pass.surfaces.has_turns) {
+        glProgramUniform1f(program, kPixel, static_cast<float>(1.0 / lens.px_per_unit));
+        glBindImageTexture(3, pass.surfaces.turn.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    }
 
     glBindTextureUnit(0, pass.triangle.id());
     const std::array<const Buffer*, 4> buffers = {&scene.positions, &scene.normals, &scene.tangents,
@@ -158,18 +164,28 @@ Surfaces upload_surfaces(Device& device,
     return surfaces;
 }
 
-SurfacePass make_surface_pass(Device& device, const SceneBuffers& scene, glm::ivec2 size_px) {
+SurfacePass make_surface_pass(Device& device,
+                              const SceneBuffers& scene,
+                              glm::ivec2 size_px,
+                              bool has_turns) {
     SurfacePass pass;
     pass.size_px = size_px;
     pass.has_tangents = scene.has_tangents;
     pass.draw = link_draw("render/shaders/gbuffer.vert", "render/shaders/gbuffer.frag");
-    pass.resolve = link_compute("render/shaders/gbuffer.comp",
-                                scene.has_tangents ? Defines{"HAS_TANGENTS"} : Defines{});
+    Defines defines;
+    if (scene.has_tangents)
+        defines.emplace_back("HAS_TANGENTS");
+    if (has_turns)
+        defines.emplace_back("HAS_TURNS");
+    pass.resolve = link_compute("render/shaders/gbuffer.comp", defines);
     pass.triangle = make_texture(device, "seen triangles", GL_R32UI, size_px);
     pass.depth = make_texture(device, "depths", GL_DEPTH_COMPONENT32F, size_px);
     pass.framebuffer = make_framebuffer(pass);
     pass.surfaces = make_surfaces(device, size_px, scene.has_tangents);
     pass.surfaces.frame = make_frame(device, glm::dvec3(0.0), size_px);
+    pass.surfaces.has_turns = has_turns;
+    if (has_turns)
+        pass.surfaces.turn = make_texture(device, "turns of normals", GL_R32F, size_px);
     device.check("surfaces");
     return pass;
 }
@@ -190,6 +206,8 @@ void bind_surfaces(const Surfaces& surfaces, const Buffer& materials) {
     const std::array<GLuint, 3> textures = {surfaces.position.id(), surfaces.normal.id(),
                                             surfaces.tangent.id()};
     glBindTextures(0, static_cast<GLsizei>(textures.size()), textures.data());
+    if (surfaces.has_turns)
+        glBindTextureUnit(kTurnTexture, surfaces.turn.id());
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, surfaces.frame.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, materials.id());
 }

@@ -26,7 +26,9 @@ struct Surfaces {
     Texture normal;   // RGBA32F: world, unit length, towards the viewer (where nothing is seen: the
                       // ray's direction); depth along the camera's axis, metres
     Texture tangent;  // RGBA32F: world, of any length; only with has_tangents
-    Buffer frame;     // FrameBlock
+    bool has_turns = false;
+    Texture turn;  // R32F: how far the normal turns across a pixel, radians; only with has_turns
+    Buffer frame;  // FrameBlock
 };
 
 /// A pixel of surfaces that are not drawn but known.
@@ -55,11 +57,15 @@ struct SurfacePass {
     Surfaces surfaces;  // the last that was drawn
 };
 
-SurfacePass make_surface_pass(Device& device, const SceneBuffers& scene, glm::ivec2 size_px);
+/// has_turns: whether Surfaces::turn is wanted.
+SurfacePass make_surface_pass(Device& device,
+                              const SceneBuffers& scene,
+                              glm::ivec2 size_px,
+                              bool has_turns = false);
 
 /// Fills pass.surfaces with what the camera sees, a ray a pixel through `at_px` of it (0.5, 0.5:
 /// the middle; x right, y down). Surfaces have two sides. Changes the bound framebuffer, program,
-/// viewport, image units 0 to 2 and storage buffers 4 to 7; depth test and clip control are put
+/// viewport, image units 0 to 3 and storage buffers 4 to 7; depth test and clip control are put
 /// back to OpenGL's defaults.
 void draw_surfaces(const SceneBuffers& scene,
                    const Camera& camera,

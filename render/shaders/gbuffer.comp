@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where each pixel's ray meets the triangle that is seen there, as render/cpu/tracer.cpp finds it.
+#ifdef HAS_TURNS
+#include "formats/shared/sample_count.glsl.h"
+#endif
+
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform usampler2D seen_triangle;  // 1 + triangle; 0: none
@@ -15,6 +19,11 @@ layout(rgba32f, binding = 1) uniform writeonly restrict image2D normal_image;
 layout(rgba32f, binding = 2) uniform writeonly restrict image2D tangent_image;
 #endif
 
+#ifdef HAS_TURNS
+layout(r32f, binding = 3) uniform writeonly restrict image2D turn_image;
+layout(location = 3) uniform float pixel_width;  // at depth 1
+#endif
+
 layout(location = 0) uniform dvec3 eye_world_m;
 layout(location = 1) uniform dmat3 world_from_pixel;  // of (x, y, 1), to a direction of any length
 layout(location = 2) uniform vec3 forward;
@@ -26,6 +35,19 @@ const double kGrazing = 1e-3lf;
 vec3 mix3(vec3 weights, vec3 a, vec3 b, vec3 c) {
     return weights.x * a + weights.y * b + weights.z * c;
 }
+
+#ifdef HAS_TURNS
+// How far the normal turns across a pixel, as render/cpu/tracer.cpp finds it.
+float turn_rad(uint ia, uint ib, uint ic, float depth_m) {
+    vec3 a = normals[ia].xyz, b = normals[ib].xyz, c = normals[ic].xyz;
+    if (a == vec3(0.0) || b == vec3(0.0) || c == vec3(0.0))
+        return 0.0;
+    return pixel_width * depth_m *
+           triangle_curvature(positions[ib].xyz - positions[ia].xyz,
+                              positions[ic].xyz - positions[ib].xyz, normalize(a), normalize(b),
+                              normalize(c));
+}
+#endif
 
 // A point of the triangle's plane by its corners' weights.
 dvec3 weights_of(dvec3 p, dvec3 a, dvec3 b, dvec3 c, dvec3 normal) {
@@ -47,6 +69,9 @@ void main() {
         imageStore(normal_image, pixel, vec4(vec3(direction), 0.0));
 #ifdef HAS_TANGENTS
         imageStore(tangent_image, pixel, vec4(0.0));
+#endif
+#ifdef HAS_TURNS
+        imageStore(turn_image, pixel, vec4(0.0));
 #endif
         return;
     }
@@ -77,6 +102,9 @@ void main() {
     }
     imageStore(position_image, pixel, vec4(vec3(hit + eye_world_m), positions[ia].w));
     imageStore(normal_image, pixel, vec4(normal, dot(forward, vec3(hit))));
+#ifdef HAS_TURNS
+    imageStore(turn_image, pixel, vec4(turn_rad(ia, ib, ic, dot(forward, vec3(hit)))));
+#endif
 #ifdef HAS_TANGENTS
     imageStore(tangent_image, pixel,
                vec4(mix3(w, tangents[ia].xyz, tangents[ib].xyz, tangents[ic].xyz), 0.0));

@@ -7,8 +7,8 @@
 layout(std140, binding = 2) uniform SkyBlock {
     mat4 environment_from_world;
     vec4 harmonics[kHarmonics];  // radiance, r g b
-    vec4 intensity_sun;          // intensity; the largest sun's radius, radians
-    ivec4 counts;                // filtered samples; directions; suns
+    vec4 intensity_sun;          // intensity; the largest sun's radius, radians; relative error
+    ivec4 counts;                // filtered samples; directions; suns; camera samples
 } sky;
 
 // Of directions that hold most of the light: in the environment's frame; radiance over (count

@@ -3,6 +3,7 @@
 
 #include "formats/files/error.h"
 #include "formats/shared/environment_maps.glsl.h"
+#include "formats/shared/tonemap.glsl.h"
 #include "tests/environment/skies.h"
 #include "tests/support/random.h"
 
@@ -79,15 +80,20 @@ TEST(ParaboloidMap, HoldsTheLightOfSmallSuns) {
 }
 
 // Proves that levels are means: one texel of the next is that of four, and the top is the mean of
-// all.
+// all, of luminance squared too.
 TEST(ParaboloidMap, LevelsAreMeans) {
     const ParaboloidMap map = make_paraboloid_map(test::sunny_sky(16));
     for (int side = 0; side < 2; ++side) {
         glm::dvec3 sum(0.0);
-        for (const glm::vec3& texel : map.levels.front().sides[static_cast<std::size_t>(side)])
-            sum += glm::dvec3(texel) / map.texels();
-        const glm::vec3 top = map.levels.back().sides[static_cast<std::size_t>(side)].front();
+        double square = 0.0;
+        for (const glm::vec4& texel : map.levels.front().sides[static_cast<std::size_t>(side)]) {
+            sum += glm::dvec3(glm::vec3(texel)) / map.texels();
+            square += std::pow(static_cast<double>(shared::luminance709(glm::vec3(texel))), 2) /
+                      map.texels();
+        }
+        const glm::vec4 top = map.levels.back().sides[static_cast<std::size_t>(side)].front();
         EXPECT_NEAR(top.y / sum.y, 1.0, 1e-5);
+        EXPECT_NEAR(top.w / square, 1.0, 1e-5);
     }
 }
 

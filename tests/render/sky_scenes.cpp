@@ -5,6 +5,8 @@
 #include "tests/render/pictures.h"
 #include "tests/render/scenes.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,6 +69,42 @@ render::Rendered reference(const Scene& scene, int samples, bool has_shadows) {
     options.samples = samples;
     options.effects.shadows = has_shadows ? render::Switch::Auto : render::Switch::Off;
     return render::render_cpu(scene, options);
+}
+
+void for_each_surface(const Picture& picture, const std::function<void(std::size_t)>& check) {
+    int count = 0;
+    for (std::size_t k = 0; k < layer(picture, "depth").values.size(); ++k)
+        if (layer(picture, "depth").values[k] > 0.0F) {
+            check(k);
+            ++count;
+        }
+    EXPECT_GT(count, 100);
+}
+
+Scene with_ball(Scene scene) {
+    constexpr int kRows = 24, kColumns = 48;
+    Mesh ball;
+    ball.name = "ball";
+    for (int row = 0; row <= kRows; ++row)
+        for (int column = 0; column <= kColumns; ++column) {
+            const double polar = std::acos(-1.0) * row / kRows;
+            const double azimuth = 2.0 * std::acos(-1.0) * column / kColumns;
+            const glm::vec3 normal(std::sin(polar) * std::cos(azimuth),
+                                   std::sin(polar) * std::sin(azimuth), std::cos(polar));
+            ball.normals.push_back(normal);
+            ball.positions_m.push_back(0.6F * normal + glm::vec3(0.0F, 0.0F, 0.3F));
+        }
+    for (unsigned row = 0; row < kRows; ++row)
+        for (unsigned column = 0; column < kColumns; ++column) {
+            const unsigned at = row * (kColumns + 1) + column, below = at + kColumns + 1;
+            if (row > 0)
+                ball.triangles.emplace_back(at, below + 1, at + 1);
+            if (row + 1 < kRows)
+                ball.triangles.emplace_back(at, below, below + 1);
+        }
+    scene.instances.push_back({"ball", static_cast<int>(scene.meshes.size()), glm::dmat4(1.0)});
+    scene.meshes.push_back(ball);
+    return scene;
 }
 
 double relative_rms(const Picture& a, const Picture& b) {

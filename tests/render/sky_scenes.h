@@ -6,6 +6,8 @@
 #include "formats/scene/scene.h"
 #include "render/cpu/render.h"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 namespace nearfield::test {
@@ -27,6 +29,12 @@ Scene under(const SceneEnvironment& sky, const shared::Brdf& brdf);
 
 /// A small picture by the reference.
 render::Rendered reference(const Scene& scene, int samples, bool has_shadows = true);
+
+/// Calls with the index of each pixel that shows a surface; there are to be more than 100.
+void for_each_surface(const Picture& picture, const std::function<void(std::size_t)>& check);
+
+/// A ball of radius 0.6 above the floor, of the same material, with normals.
+Scene with_ball(Scene scene);
 
 /// Root mean square of a/b - 1 in green over pixels that show a surface.
 double relative_rms(const Picture& a, const Picture& b);

@@ -1,36 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/files/error.h"
 #include "render/cpu/render.h"
 #include "tests/environment/skies.h"
 #include "tests/render/pictures.h"
 #include "tests/render/scenes.h"
 #include "tests/render/sky_scenes.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <functional>
 #include <iostream>
-#include <string>
 
 namespace nearfield::render {
 namespace {
 
-using test::constant_sky, test::difference, test::layer, test::metal, test::reference,
-    test::relative_rms, test::small, test::sunny_sky, test::under;
-
-void for_each_surface(const Picture& picture, const std::function<void(std::size_t)>& check) {
-    int count = 0;
-    for (std::size_t k = 0; k < layer(picture, "depth").values.size(); ++k)
-        if (layer(picture, "depth").values[k] > 0.0F) {
-            check(k);
-            ++count;
-        }
-    EXPECT_GT(count, 100);
-}
+using test::constant_sky, test::difference, test::for_each_surface, test::layer, test::metal,
+    test::reference, test::relative_rms, test::small, test::sunny_sky, test::under;
 
 // Proves absolute scale: under light of 1 from everywhere a surface of albedo 0.5 looks 0.5, its
 // irradiance is pi, and what is past it is 1. Filtered and as a reference.
@@ -95,53 +80,6 @@ TEST(Sky, FilteredSamplesAreNearTheReference) {
     EXPECT_LT(filtered, 0.8 * plain);
 }
 
-// Proves that the reference's sigma is its error: z over pixels of two runs with other seeds is of
-// unit width, and its mean of both halves is the filtered diffuse light within the harmonics'
-// bound.
-TEST(Sky, ReferenceKnowsItsNoise) {
-    const Scene scene = under(sunny_sky(), metal(shared::kBrdfGgx, 0.0F, {0.4F, 0.4F}));
-    RenderOptions options = small();
-    options.environment.method = EnvironmentMethod::Reference;
-    options.samples = 256;
-    const Picture a = render_cpu(scene, options).picture;
-    options.seed = 2;
-    const Picture b = render_cpu(scene, options).picture;
-    double squares = 0.0;
-    int count = 0;
-    for_each_surface(a, [&](std::size_t k) {
-        const auto y = [&](const Picture& p) {
-            const std::vector<float>& v = layer(p, "").values;
-            return 0.2126 * static_cast<double>(v[3 * k]) +
-                   0.7152 * static_cast<double>(v[3 * k + 1]) +
-                   0.0722 * static_cast<double>(v[3 * k + 2]);
-        };
-        const double sigma = std::hypot(static_cast<double>(layer(a, "sigma").values[k]),
-                                        static_cast<double>(layer(b, "sigma").values[k]));
-        ASSERT_GT(sigma, 0.0);
-        squares += std::pow((y(a) - y(b)) / sigma, 2);
-        ++count;
-    });
-    // Student's t of 6 degrees of freedom: variance 1.5, and some 200 pixels.
-    EXPECT_GT(squares / count, 0.7);
-    EXPECT_LT(squares / count, 2.5);
-}
-
-// Proves that an occluder hides the sky from the reference, and shadows=off shows it again.
-TEST(Sky, ReferenceTracesVisibility) {
-    Scene scene = under(constant_sky(glm::vec3(1.0F)));
-    test::add_blocker(scene, "roof", {0, 0, 2.0}, {40.0F, 40.0F});
-    const Rendered dark = reference(scene, 64);
-    for_each_surface(dark.picture, [&](std::size_t k) {
-        EXPECT_LT(layer(dark.picture, "environment").values[3 * k], 0.06F);
-    });
-    EXPECT_GT(dark.report.shadow_rays, 0U);
-    const Rendered open = reference(scene, 64, false);
-    EXPECT_EQ(open.report.shadow_rays, 0U);
-    for_each_surface(open.picture, [&](std::size_t k) {
-        EXPECT_GT(layer(open.picture, "environment").values[3 * k], 0.45F);
-    });
-}
-
 // Proves that rotation turns what arrives as it turns the scene, and that intensity is a factor.
 TEST(Sky, TurnsAndScales) {
     shared::Brdf brdf = metal(shared::kBrdfPhong, 10.0F, {});
@@ -168,57 +106,6 @@ TEST(Sky, TurnsAndScales) {
     EXPECT_GT(difference(layer(plain.picture, "irradiance"),
                          layer(render_cpu(sky_alone, small()).picture, "irradiance")),
               0.05);
-}
-
-std::string passes_in(const Rendered& rendered) {
-    std::string text;
-    for (const PlannedPass& pass : rendered.report.plan.passes)
-        text += pass.is_in ? std::string(pass.name) + ";" : "";
-    return text;
-}
-
-// Proves that a scene without environment runs none of it, one of diffuse materials no filtered
-// samples, one of metals no harmonics, and that off is off; each with its reason.
-TEST(Sky, OnlyWhereCalledFor) {
-    const Scene diffuse = under(sunny_sky());
-    Scene none = diffuse;
-    none.environment.reset();
-    EXPECT_EQ(passes_in(render_cpu(none, small(4))), "camera rays;");
-    EXPECT_EQ(passes_in(render_cpu(diffuse, small(4))), "camera rays;environment;sky irradiance;");
-    const Scene glossy = under(sunny_sky(), metal(shared::kBrdfPhong, 10.0F, {}));
-    EXPECT_EQ(passes_in(render_cpu(glossy, small(4))),
-              "camera rays;samples;gloss;environment;sky samples;");
-    EXPECT_EQ(passes_in(reference(diffuse, 8)), "camera rays;environment;sky samples;");
-    Scene with_roof = diffuse;
-    test::add_blocker(with_roof, "roof", {0, 0, 2.0}, {1.0F, 1.0F});
-    EXPECT_EQ(passes_in(render_cpu(with_roof, small(4))),
-              "camera rays;environment;sky irradiance;sky rays;");
-
-    Scene dimmed = diffuse;
-    dimmed.environment->intensity = 0.0;
-    dimmed.environment->path = "absent.exr";  // not opened
-    EXPECT_EQ(passes_in(render_cpu(dimmed, small(4))), "camera rays;");
-    RenderOptions off = small(4);
-    off.effects.environment = Switch::Off;
-    EXPECT_EQ(layer(render_cpu(diffuse, off).picture, "").values,
-              layer(render_cpu(none, small(4)).picture, "").values);
-    RenderOptions on = small(4);
-    on.effects.environment = Switch::On;
-    EXPECT_EQ(passes_in(render_cpu(none, on)), "camera rays;");
-    EXPECT_THROW(render_cpu(under({"absent.exr", "absent.exr"}), small(4)), Error);
-
-    const auto reason = [](const Rendered& rendered, PassId id) {
-        for (const PlannedPass& pass : rendered.report.plan.passes)
-            if (pass.id == id)
-                return pass.reason;
-        return std::string("no such pass");
-    };
-    EXPECT_THAT(reason(render_cpu(diffuse, small(4)), PassId::EnvironmentSamples),
-                testing::HasSubstr("no material has a lobe"));
-    EXPECT_THAT(reason(render_cpu(none, small(4)), PassId::EnvironmentSamples),
-                testing::HasSubstr("the scene has none"));
-    EXPECT_THAT(reason(render_cpu(diffuse, small(4)), PassId::Environment),
-                testing::HasSubstr("sunny.exr"));
 }
 
 // Proves that lamps' light is what it is without a sky, and the sky's what it is without lamps.
@@ -248,46 +135,6 @@ TEST(Sky, IsTheSameAfterSeveralPasses) {
     const Rendered many = render_cpu(scene, options);
     EXPECT_GT(many.report.passes, 1);
     EXPECT_LT(difference(layer(one, "environment"), layer(many.picture, "environment")), 1e-6);
-}
-
-// Proves that the extension survives a file, and that what is wrong in it is named.
-TEST(SkyScene, SurvivesAFileAndRefusesNonsense) {
-    Scene scene = under(sunny_sky());
-    scene.environment->world_from_environment =
-        glm::dmat3(test::pose({}, glm::normalize(glm::dvec3(0.3, 0.5, -0.2))));
-    scene.environment->intensity = 250.0;
-    write_scene(scene, "sky.gltf");
-    const Scene read = read_scene("sky.gltf");
-    ASSERT_TRUE(read.environment.has_value());
-    EXPECT_EQ(read.environment->uri, "sunny.exr");
-    EXPECT_EQ(read.environment->intensity, 250.0);
-    for (int c = 0; c < 3; ++c)
-        EXPECT_LT(glm::distance(read.environment->world_from_environment[c],
-                                scene.environment->world_from_environment[c]),
-                  1e-12);
-    const auto complaint =
-        [](const std::string& extension) {
-            std::ofstream("bad.gltf")
-                << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[],)"
-                << R"("extensions":{"NEARFIELD_environment":)" << extension
-                << R"(}}],"extensionsUsed":["NEARFIELD_environment"]})";
-            try {
-                read_scene("bad.gltf");
-            } catch (const Error& error) {
-                return std::string(error.what());
-            }
-            return std::string("none");
-        };
-    using testing::HasSubstr;
-    EXPECT_EQ(complaint(R"({"uri":"a.hdr"})"), "none");
-    EXPECT_THAT(complaint("{}"), HasSubstr(".uri"));
-    EXPECT_THAT(complaint(R"({"uri":"../a.hdr","colour":1})"), HasSubstr("colour"));
-    EXPECT_THAT(complaint("3"),
-                HasSubstr(".NEARFIELD_environment: cannot read scene: expected an object, got 3"));
-    EXPECT_THAT(complaint(R"({"uri":"/a.hdr"})"), HasSubstr("relative to the scene"));
-    EXPECT_THAT(complaint(R"({"uri":"a.hdr","intensity":-1})"), HasSubstr(".intensity"));
-    EXPECT_THAT(complaint(R"({"uri":"a.hdr","rotation":[0,0,1]})"), HasSubstr(".rotation"));
-    EXPECT_THAT(complaint(R"({"uri":"a.hdr","rotation":[0,0,1,1]})"), HasSubstr("length 1.41"));
 }
 
 }  // namespace

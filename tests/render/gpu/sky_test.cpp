@@ -92,6 +92,30 @@ TEST(GlSky, EveryOptionIsTheCpus) {
     EXPECT_GE(share({.method = EnvironmentMethod::Lights, .directions = 32}), kAlike);
 }
 
+// Proves that pixels draw as many samples as the CPU's, by what light varies over their lobes.
+// (With several camera samples, which the devices place differently, surface_test.cpp proves the
+// turns.)
+TEST(GlSky, DrawsAsManySamplesAsTheCpu) {
+    const Scene scene = turned(test::with_ball(under(test::soft_sky(), varnish(shared::kBrdfGgx))));
+    RenderOptions options = small_options();
+    options.effects.shadows = Switch::Off;
+    options.environment.error_rel = 0.02;
+    options.environment.samples = 256;
+    EXPECT_GE(share_alike(scene, options), kAlike);
+    const Picture counted = render_gl(scene, options).picture;
+    options.environment.error_rel = 0.0;
+    EXPECT_LT(share_within(layer(render_gl(scene, options).picture, ""), layer(counted, ""), 1e-3),
+              0.9);
+    // Programs for turns compile, and make no difference of more than samples do.
+    options.environment.error_rel = 0.02;
+    options.samples_per_pixel = 4;
+    const Picture several = render_gl(scene, options).picture;
+    expect_light(several);
+    EXPECT_LT(lab_difference(layer(several, "").values,
+                             layer(render_cpu(scene, options).picture, "").values),
+              1.0);
+}
+
 // Proves that camera samples and lamps beside the environment are added up as on the CPU.
 TEST(GlSky, AddsToLampsAndCameraSamples) {
     Scene scene = test::uneven_scene();
@@ -128,6 +152,34 @@ TEST(GlSky, MapsThrowTheShadowsOfRays) {
         EXPECT_LT(lab(gl), 0.1 * lab(without));
         EXPECT_GT(lab(without), 1.0);
     }
+}
+
+// Proves that means over neighbors keep the light and soften its steps, the more the wider.
+TEST(GlSky, NeighborsShareWhatTheyFindHidden) {
+    const Scene scene = turned(with_roof(under(test::soft_sky())));
+    RenderOptions options = small_options();
+    const auto picture = [&](int filter_px) {
+        options.environment.filter_px = filter_px;
+        return render_gl(scene, options).picture;
+    };
+    const auto sum = [](const Picture& one) {
+        double all = 0.0;
+        for (const float value : layer(one, "irradiance").values)
+            all += static_cast<double>(value);
+        return all;
+    };
+    const auto steps = [](const Picture& one) {
+        double all = 0.0;
+        const std::vector<float>& values = layer(one, "irradiance").values;
+        for (std::size_t k = 3; k < values.size(); k += 3)
+            all += std::pow(static_cast<double>(values[k] - values[k - 3]), 2);
+        return all;
+    };
+    const Picture sharp = picture(0), soft = picture(1), softer = picture(3);
+    EXPECT_NEAR(sum(soft) / sum(sharp), 1.0, 0.01);
+    EXPECT_NEAR(sum(softer) / sum(sharp), 1.0, 0.02);
+    EXPECT_LT(steps(soft), steps(sharp));
+    EXPECT_LT(steps(softer), steps(soft));
 }
 
 std::string passes_in(const Rendered& rendered) {
