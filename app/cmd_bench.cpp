@@ -43,6 +43,7 @@ struct BenchCommand {
     bench::CalibrationSweepOptions calibration;
     bool quick = false;
     std::string mesh;
+    std::vector<std::string> studies;
 };
 
 LightField read_lamp(const BenchCommand& command) {
@@ -186,9 +187,9 @@ void run_environment(const BenchCommand& command, const std::string& command_lin
     const std::filesystem::path folder(command.page);
     bench::make_folder(folder.string());
     ProgressLine progress(kOfEnvironment);
-    const bench::EnvironmentFindings findings =
-        bench::run_environment_sweeps({folder.string(), command.input, command.mesh, command.quick},
-                                      [&](double fraction) { progress.update(fraction); });
+    const bench::EnvironmentFindings findings = bench::run_environment_sweeps(
+        {folder.string(), command.input, command.mesh, command.quick, command.studies},
+        [&](double fraction) { progress.update(fraction); });
     progress.finish();
     const bench::EnvironmentSetup setup{command_line, machine(), command.quick};
     write_file(bench::as_csv(findings), (folder / "environment.csv").string());
@@ -382,6 +383,7 @@ void add_bench(CLI::App& app) {
     sub->add_option("--mesh", c->mesh,
                     "scene whose first mesh is the uneven surface; by default a knobby ball")
         ->type_name("FILE");
+    add_words(*sub, "--studies", c->studies, bench::environment_studies(), "what to measure");
     sub->option_defaults()->group(kOfPapers);
     add_number(*sub, "--frame-px", c->papers.frame_px, 16, 4096, "PX",
                "width of the samplers' frames, 240 and of quick runs 32 by default; others follow")

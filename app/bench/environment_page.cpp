@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/bench/environment.h"
+#include "app/bench/environment_plots.h"
 #include "formats/files/provenance.h"
 #include "formats/report/page.h"
 #include "formats/report/plot.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <set>
+#include <string>
 
 namespace nearfield::bench {
 namespace {
@@ -28,12 +28,28 @@ constexpr StudyText kStudies[] = {
      "one beside N samples, up to 32; gems: one level more, after its own clamp (2007); mfis: "
      "level by the "
      "density's mean over what a sample stands for (Tokuyoshi 2016); far lamps: "
-     "N directions by luminance. No shadows."},
+     "N directions by luminance; resampled: N chosen of 8 N by what they would reflect; by error: "
+     "as "
+     "many as errors of 0.4, 0.2, 0.1, 0.05 are estimated to call for, N their mean. No shadows."},
     {"mesh", "The same on an uneven surface",
      "\"On complex geometry, undersampling appears as blurring and dulling of the highlights. "
      "However, visually acceptable results are found around 50 samples per pixel.\" More samples "
      "are required than on the sphere for the same RMS.",
      "The mesh named above."},
+    {"counts", "As many samples as an error calls for",
+     "\"We would like to find a heuristic to automatically choose the number of samples based on "
+     "the "
+     "properties of the BRDF, environment, and geometry\" (future work, 2008). \"24 or fewer "
+     "samples "
+     "are needed for surfaces with complex geometry. Smooth surfaces often need more\" (2007).",
+     "The mesh, four camera samples a pixel, which count for each other where the surface turns "
+     "within "
+     "a pixel. By error: N by how far light varies over the lobe, at most 512; its mean is shown."},
+    {"suns", "Small suns",
+     "Nothing is said of suns that are smaller than what a sample stands for.",
+     "A plate of GGX under darkness with one pixel of light, 40 samples. Light too much: of the "
+     "sum; "
+     "spark: the largest difference upwards over the mean."},
     {"anisotropic", "Brushed metal",
      "\"The isotropic filter approximation breaks down when rendering more anisotropic materials\" "
      "(Ward, 0.01 and 0.29). Filters by derivatives are \"almost always worse than with isotropic "
@@ -44,84 +60,23 @@ constexpr StudyText kStudies[] = {
      "remove the spatial aliasing from the undersampled shadow maps\"; compared with a fit of "
      "10,000 samples, the best that such harmonics can do.",
      "The uneven surface, white and matt, on a floor, against traced samples. rays: the fit of so "
-     "many directions by a ray each (the CPU); maps: by orthographic maps of 512 x 512 (OpenGL). "
+     "many directions by a ray each (the CPU); maps: by orthographic maps of 512 x 512 (OpenGL), "
+     "coarse: "
+     "of 64 x 64; over neighbors: means of 3 x 3 pixels of the same surface. "
      "The fit of most rays shows the harmonics' own error, maps less rays the maps'."},
     {"time", "Time on the graphics card against triangles",
      "\"Both times vary close to linearly with respect to the number of samples\" (figure 2).",
      "Least of three: rendering N maps, fitting them pixel by pixel, 40 filtered samples."}};
 
-std::vector<std::string> subjects_of(const EnvironmentFindings& findings,
-                                     const std::string& study) {
-    std::vector<std::string> subjects;
-    for (const EnvironmentRow& row : findings.rows)
-        if (row.study == study &&
-            std::find(subjects.begin(), subjects.end(), row.subject) == subjects.end())
-            subjects.push_back(row.subject);
-    return subjects;
-}
-
-report::Plot plot_of(const EnvironmentFindings& findings,
-                     const std::string& study,
-                     const std::string& subject,
-                     double EnvironmentRow::*value,
-                     const std::string& label) {
-    report::Plot plot;
-    plot.title = subject;
-    plot.x_label = "samples";
-    plot.y_label = label;
-    plot.log_x = plot.log_y = true;
-    for (const EnvironmentRow& row : findings.rows) {
-        if (row.study != study || row.subject != subject || row.method == "reference")
-            continue;
-        auto curve = std::find_if(plot.curves.begin(), plot.curves.end(),
-                                  [&](const report::Curve& one) { return one.name == row.method; });
-        if (curve == plot.curves.end()) {
-            report::Curve added;
-            added.name = row.method;
-            added.marks = report::Marks::Dots;
-            curve = plot.curves.insert(plot.curves.end(), added);
-        }
-        curve->x.push_back(row.samples);
-        curve->y.push_back(row.*value);
-    }
-    return plot;
-}
-
-void add_plots(const EnvironmentFindings& findings,
-               const std::string& study,
-               report::Section& section) {
-    const bool is_time = study == "time";
-    for (const std::string& subject : subjects_of(findings, study)) {
-        const auto rms =
-            report::draw(plot_of(findings, study, subject,
-                                 is_time ? &EnvironmentRow::time_s : &EnvironmentRow::rms,
-                                 is_time ? "time, s" : "relative RMS"),
-                         study + ", " + subject);
-        if (rms)
-            section.images.push_back(*rms);
-        if (is_time)
-            continue;
-        const auto lab = report::draw(
-            plot_of(findings, study, subject, &EnvironmentRow::lab, "mean Lab difference"),
-            study + ", " + subject + ", Lab");
-        if (lab)
-            section.images.push_back(*lab);
-    }
-    section.columns = 2;
-    if (section.images.empty())
-        section.paragraphs.emplace_back(
-            "gnuplot is not installed or failed, so plots are missing (Debian package "
-            "gnuplot-nox).");
-}
-
 report::Section study_section(const EnvironmentFindings& findings, const StudyText& text) {
     report::Section section{text.title, {}, {}, {}, {}};
     section.paragraphs = {std::string("The paper: ") + text.paper,
                           std::string("Here: ") + text.here};
-    add_plots(findings, text.study, section);
+    if (std::string(text.study) != "suns")  // of one N
+        add_plots(findings, text.study, section);
     report::Table table{"Errors against the traced reference",
                         {"", "method", "N", "relative RMS", "RMS over the mean", "RMS as displayed",
-                         "mean Lab difference", "light too much", "time"},
+                         "mean Lab difference", "light too much", "spark", "time"},
                         {}};
     for (const EnvironmentRow& row : findings.rows)
         if (row.study == text.study)
@@ -129,50 +84,56 @@ report::Section study_section(const EnvironmentFindings& findings, const StudyTe
                 {row.subject, row.method, fmt::format("{}", row.samples),
                  fmt::format("{:.3g}", row.rms), fmt::format("{:.3g}", row.rms_mean),
                  fmt::format("{:.3g}", row.rms_toned), fmt::format("{:.3g}", row.lab),
-                 fmt::format("{:.2g} %", 100.0 * row.bias),
+                 fmt::format("{:.2g} %", 100.0 * row.bias), fmt::format("{:.2g}", row.spark),
                  fmt::format("{:.3g} ms", 1e3 * row.time_s)});
     section.tables.push_back(std::move(table));
     return section;
 }
 
+/// A cube map beside the paraboloids.
+report::Section maps_section(const EnvironmentFindings& findings) {
+    report::Section section{"Paraboloid maps beside a cube map", {}, {}, {}, {}};
+    section.paragraphs = {
+        "The paper: \"We do not use cube maps since independent filtering of each face results in "
+        "image artifacts (discontinuities).\"",
+        "Here: what lookups show as the mean over a solid angle, against the mean over a cap of "
+        "it, "
+        "and how far they jump from one side to the other of where the two maps, or a cube's "
+        "faces, "
+        "meet; in shares of the picture's mean luminance. The picture without its suns; the cube's "
+        "faces are half as wide as a paraboloid map, so that middle texels are about alike. Below, "
+        "what a mirror shows about a cube's corner, which the paraboloids' seam passes too."};
+    report::Table table{
+        "Filtered lookups", {"", "solid angle", "RMS error", "RMS jump", "largest jump"}, {}};
+    for (const MapRow& row : findings.maps)
+        table.rows.push_back({row.map, fmt::format("{:g} sr", row.solid_angle_sr),
+                              fmt::format("{:.3g}", row.error_rms),
+                              fmt::format("{:.3g}", row.jump_rms),
+                              fmt::format("{:.3g}", row.jump_most)});
+    section.tables.push_back(std::move(table));
+    for (const SeamPicture& seam : findings.seams) {
+        report::HeatMap map;
+        map.title = fmt::format("{}, {:g} sr", seam.map, seam.solid_angle_sr);
+        map.value_label = "luminance";
+        map.lower = {-1.0, -1.0};
+        map.upper = {1.0, 1.0};
+        map.size = glm::ivec2(seam.side_px);
+        map.values = seam.luminance;
+        map.high = *std::max_element(seam.luminance.begin(), seam.luminance.end());
+        map.picture_px = {480, 420};
+        if (const auto image = report::draw(map, map.title))
+            section.images.push_back(*image);
+    }
+    section.columns = 2;
+    return section;
+}
+
+bool is_measured(const EnvironmentFindings& findings, const std::string& study) {
+    return std::any_of(findings.rows.begin(), findings.rows.end(),
+                       [&](const EnvironmentRow& row) { return row.study == study; });
+}
+
 }  // namespace
-
-std::string as_csv(const EnvironmentFindings& findings) {
-    std::string text = "study,subject,method,samples,rms,rms_mean,rms_toned,lab,bias,time_s\n";
-    for (const EnvironmentRow& row : findings.rows)
-        text += fmt::format("{},\"{}\",\"{}\",{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
-                            row.study, row.subject, row.method, row.samples, row.rms, row.rms_mean,
-                            row.rms_toned, row.lab, row.bias, row.time_s);
-    return text;
-}
-
-std::string as_json(const EnvironmentFindings& findings, const EnvironmentSetup& setup) {
-    nlohmann::ordered_json json = {{"kind", "environment"},
-                                   {"program", program_version()},
-                                   {"command", setup.command_line},
-                                   {"machine", setup.machine},
-                                   {"device", findings.device},
-                                   {"picture", findings.picture},
-                                   {"mesh", findings.mesh},
-                                   {"quick", setup.quick},
-                                   {"frame_px", findings.frame_px},
-                                   {"reference_samples", findings.reference_samples},
-                                   {"time_s", findings.time_s},
-                                   {"conclusions", conclusions(findings)},
-                                   {"results", nlohmann::ordered_json::array()}};
-    for (const EnvironmentRow& row : findings.rows)
-        json["results"].push_back({{"study", row.study},
-                                   {"subject", row.subject},
-                                   {"method", row.method},
-                                   {"samples", row.samples},
-                                   {"rms", row.rms},
-                                   {"rms_mean", row.rms_mean},
-                                   {"rms_toned", row.rms_toned},
-                                   {"lab", row.lab},
-                                   {"bias", row.bias},
-                                   {"time_s", row.time_s}});
-    return json.dump(1) + "\n";
-}
 
 void write_page(const EnvironmentFindings& findings,
                 const EnvironmentSetup& setup,
@@ -203,7 +164,10 @@ void write_page(const EnvironmentFindings& findings,
     report::Section claims{"What follows", conclusions(findings), {}, {}, {}};
     page.sections.push_back(claims);
     for (const StudyText& text : kStudies)
-        page.sections.push_back(study_section(findings, text));
+        if (is_measured(findings, text.study))
+            page.sections.push_back(study_section(findings, text));
+    if (!findings.maps.empty())
+        page.sections.push_back(maps_section(findings));
     report::Section provenance{"Machine and command", {}, {}, {}, {}};
     provenance.preformatted =
         fmt::format("{}\n{}\n{}, {}\n{:.0f} s in all\n", setup.command_line, program_version(),

@@ -80,6 +80,26 @@ void write_hall(const std::string& path) {
     write_picture(picture, std::nullopt, path);
 }
 
+void write_sun(const std::string& path, int height_px, glm::ivec2 pixel) {
+    Picture picture;
+    picture.size_px = {2 * height_px, height_px};
+    picture.layers = {{"", {"Y"}, {}}};
+    for (int y = 0; y < picture.size_px.y; ++y)
+        for (int x = 0; x < picture.size_px.x; ++x)
+            picture.layers[0].values.push_back(glm::ivec2(x, y) == pixel ? 1e6F : 0.0F);
+    write_picture(picture, std::nullopt, path);
+}
+
+Mesh make_plate() {
+    const glm::vec3 along(1.0F, 0.0F, 0.0F), up(0.0F, 0.77F, -0.638F);
+    Mesh plate;
+    plate.name = "plate";
+    plate.positions_m = {-along - up, along - up, along + up, -along + up};
+    plate.normals.assign(4, glm::normalize(glm::cross(along, up)));
+    plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return plate;
+}
+
 Mesh make_ball(int rows, double knobs) {
     Mesh mesh;
     mesh.name = knobs > 0.0 ? "knobby ball" : "ball";
@@ -166,6 +186,12 @@ shared::Brdf phong(float exponent) {
     brdf.kind = shared::kBrdfPhong;
     brdf.specular = glm::vec3(1.0F);
     brdf.exponent = exponent;
+    return brdf;
+}
+
+shared::Brdf ggx(float alpha) {
+    shared::Brdf brdf = ward(alpha, alpha);
+    brdf.kind = shared::kBrdfGgx;
     return brdf;
 }
 

@@ -12,6 +12,12 @@ namespace nearfield::bench {
 /// Writes it as .exr, 256 x 128.
 void write_hall(const std::string& path);
 
+/// Darkness with one gray pixel of 1e6, 2 height x height.
+void write_sun(const std::string& path, int height_px, glm::ivec2 pixel);
+
+/// A plate of 2 x 2 about the origin that faces upwards and towards +z.
+Mesh make_plate();
+
 /// A ball of radius 1 with `rows` rows of quads twice as long; knobs: how far it is uneven.
 Mesh make_ball(int rows, double knobs);
 
@@ -25,6 +31,7 @@ Scene scene_of(const Mesh& mesh, const shared::Brdf& brdf, const std::string& pi
 void add_floor(Scene& scene);
 
 shared::Brdf phong(float exponent);
+shared::Brdf ggx(float alpha);
 shared::Brdf ward(float alpha_x, float alpha_y);
 shared::Brdf matt();
 

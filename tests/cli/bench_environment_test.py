@@ -8,7 +8,7 @@ import pathlib
 from program import ProgramTest, main
 
 BENCH = ["bench", "environment"]
-COLUMNS = ["study", "subject", "method", "samples", "rms", "rms_mean", "rms_toned", "lab", "bias", "time_s"]
+COLUMNS = ["study", "subject", "method", "samples", "rms", "rms_mean", "rms_toned", "lab", "bias", "spark", "time_s"]
 
 
 class BenchEnvironment(ProgramTest):
@@ -18,7 +18,7 @@ class BenchEnvironment(ProgramTest):
             rows = list(csv.DictReader(file))
         self.assertEqual(list(rows[0]), COLUMNS)
         self.assertEqual((report["kind"], len(report["results"])), ("environment", len(rows)))
-        self.assertEqual({row["study"] for row in rows}, {"sphere", "mesh", "anisotropic", "visibility", "time"})
+        self.assertEqual({row["study"] for row in rows}, {"sphere", "mesh", "counts", "anisotropic", "suns", "visibility", "time"})
         found = {(row["study"], row["subject"], row["method"], int(row["samples"])):
                  {name: float(row[name]) for name in COLUMNS[4:]} for row in rows}
 
@@ -32,6 +32,13 @@ class BenchEnvironment(ProgramTest):
         self.assertLess(diffuse["rays", 64]["lab"], 0.5 * diffuse["no shadows", 0]["lab"])
         self.assertLess(abs(diffuse["maps", 64]["lab"] - diffuse["rays", 64]["lab"]), 0.2)
         for key, row in found.items():
+            if key[0] == "suns" and key[2] == "fis, suns apart":
+                self.assertLess(abs(row["bias"]), 0.01, key)
+        self.assertEqual([row["map"] for row in report["maps"]], 3 * ["paraboloids", "cube"])
+        for round_map, cube in zip(report["maps"][::2], report["maps"][1::2]):
+            self.assertLess(round_map["jump_rms"], cube["jump_rms"])
+        self.assertIn("resampled", {key[2] for key in found})
+        for key, row in found.items():
             self.assertGreater(row["time_s"], 0.0, key)
 
         page = pathlib.Path("out/environment.html").read_text()
@@ -39,6 +46,12 @@ class BenchEnvironment(ProgramTest):
         self.assertNotRegex(page, r"""(?:src|href|xlink:href)\s*=\s*["'](?!data:)""")
         for text in ("A quick run", "What follows", "Brushed metal", "Machine and command"):
             self.assertIn(text, page)
+
+    def test_measures_what_is_asked_for_alone(self):
+        report = json.loads(self.done(*BENCH, "-o", "some", "--quick", "--json", "--studies", "maps,counts").stdout)
+        self.assertEqual({row["study"] for row in report["results"]}, {"counts"})
+        self.assertEqual(len(report["maps"]), 6)
+        self.assertIn("maps", self.refused(2, *BENCH, "-o", "x", "--studies", "sun"))
 
     def test_refuses_what_it_cannot_do(self):
         self.assertIn("--k", self.refused(2, *BENCH, "-o", "x", "--k", "16"))
