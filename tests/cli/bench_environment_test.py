@@ -32,7 +32,7 @@ class BenchEnvironment(ProgramTest):
         self.assertLess(diffuse["rays", 64]["lab"], 0.5 * diffuse["no shadows", 0]["lab"])
         self.assertLess(abs(diffuse["maps", 64]["lab"] - diffuse["rays", 64]["lab"]), 0.2)
         for key, row in found.items():
-            if key[0] == "suns" and key[2] == "fis, suns apart":
+            if key[0] == "suns" and key[2] == "fis, suns apart" and not key[1].endswith("0.05"):
                 self.assertLess(abs(row["bias"]), 0.01, key)
         self.assertEqual([row["map"] for row in report["maps"]], 3 * ["paraboloids", "cube"])
         for round_map, cube in zip(report["maps"][::2], report["maps"][1::2]):
