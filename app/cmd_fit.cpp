@@ -41,6 +41,7 @@ Provenance provenance_of(const FitCommand& command, const fit::CaptureFit& resul
                                  slab.s_max_m.y)},
         {"lambda", fmt::format("{:g}", result.lambda)},
         {"model-error-rel", fmt::format("{:g}", result.model_error_rel)},
+        {"replicates", fmt::format("{}", command.options.replicates)},
         {"seed", fmt::format("{}", command.options.seed)}};
     provenance.inputs = {describe_input(command.capture + "/capture.json"),
                          describe_input(command.capture + "/log.jsonl"),
@@ -174,6 +175,10 @@ void add_fit(CLI::App& app) {
         *sub, "--model-error-rel", c->options.model_error_rel, 0.0, 1.0, "SHARE",
         "what rig and basis get wrong, of a texel's brightest position, added to sigma; without "
         "it as large as positions are foretold wrong by the others");
+    add_number(
+        *sub, "--replicates", c->options.replicates, 0, 1000, "N",
+        "fits of other noise and another calibration, kept in the file: 16 give the sigma of "
+        "any illuminance to 18 %, for nine times the solver's time");
     add_number(*sub, "--flux-lm", c->flux_lm, 0.0, 1e12, "LM",
                "flux that was measured otherwise (an integrating sphere), to be compared");
     add_number(*sub, "--flux-limit-rel", c->flux_limit_rel, 0.0, 10.0, "SHARE",

@@ -2,6 +2,7 @@
 #include "fit/rectify_capture.h"
 
 #include "fit/lit_region.h"
+#include "fit/replicates.h"
 #include "formats/files/error.h"
 #include "formats/files/provenance.h"
 #include "formats/model/overlap.h"
@@ -120,12 +121,17 @@ RectifiedCapture rectify_capture(const Measurement& measurement, const CaptureFi
     std::vector<BlockedLight> blocked = blocked_light(measurement, drift, rectifier, planes.texels);
     for (const BlockedLight& channel : blocked)
         seen.beside_filter.push_back({channel.mean_lx, channel.sigma_lx, channel.chi_square});
+    const Optics optics = optics_of(rig, positions);
     RectifiedCapture rectified{
         planes,
-        optics_of(rig, positions),
+        optics,
         measured_texels(measurement, options, planes, seen.positions, std::move(blocked)),
         {},
-        std::hypot(rig.radiometry->scale_sigma_rel, rig.radiometry->scale_systematic_rel)};
+        std::hypot(rig.radiometry->scale_sigma_rel, rig.radiometry->scale_systematic_rel),
+        {}};
+    for (int r = 0; r < options.replicates; ++r)
+        rectified.drawn_optics.push_back(
+            drawn_optics(optics, rig, {options.seed, static_cast<std::uint32_t>(r)}));
     put_positions(measurement, positions, drift, rectifier, options, rectified.texels, seen);
     seen.merge_s = now_s() - start_s;
     rectified.seen = std::move(seen);

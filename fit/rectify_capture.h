@@ -15,6 +15,7 @@ struct RectifiedCapture {
     MeasuredTexels texels;
     CaptureFit seen;  // what was seen on the way; no light field yet
     double scale_sigma_rel = 0;
+    std::vector<Optics> drawn_optics;  // of replicates: as the rig's covariance lets them be
 };
 
 /// Throws and costs as fit_capture, without the solution.

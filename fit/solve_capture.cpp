@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit/solve_capture.h"
 
+#include "fit/replicates.h"
 #include "formats/files/provenance.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -75,25 +78,50 @@ void bound_sigma(Slab& slab) {
             sigma = brightest;
 }
 
-void store(const TileResult& tile, Slab& slab, CaptureFit& fit) {
+// A tile's rows of all images to where they are in the slab's.
+void copy_rows(const Slab& slab,
+               TileRange rows,
+               const std::vector<float>& from,
+               std::vector<float>& to) {
     const auto width = static_cast<std::size_t>(slab.texels.x);
-    const std::size_t first = static_cast<std::size_t>(tile.rows.first_row) * width;
-    const std::size_t count = static_cast<std::size_t>(tile.rows.row_count) * width;
-    const auto images =
-        static_cast<std::size_t>(slab.channels) * static_cast<std::size_t>(slab.image_count());
-    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
-        for (std::size_t image = 0; image < images && !from.empty(); ++image)
-            std::copy_n(
-                from.begin() + static_cast<std::ptrdiff_t>(image * count), count,
-                to.begin() + static_cast<std::ptrdiff_t>(image * slab.texel_count() + first));
-    };
-    copy(tile.coeffs, slab.coeffs);
-    copy(tile.sigma, slab.sigma);
+    const std::size_t first = static_cast<std::size_t>(rows.first_row) * width;
+    const std::size_t count = static_cast<std::size_t>(rows.row_count) * width;
+    for (std::size_t image = 0; image * count < from.size(); ++image)
+        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(image * count), count,
+                    to.begin() + static_cast<std::ptrdiff_t>(image * slab.texel_count() + first));
+}
+
+void store(const TileResult& tile, Slab& slab, CaptureFit& fit) {
+    copy_rows(slab, tile.rows, tile.coeffs, slab.coeffs);
+    copy_rows(slab, tile.rows, tile.sigma, slab.sigma);
+    const std::size_t count = tile.valid_count.size() / static_cast<std::size_t>(slab.channels);
+    const std::size_t first =
+        static_cast<std::size_t>(tile.rows.first_row) * static_cast<std::size_t>(slab.texels.x);
     for (std::size_t t = 0; t < count; ++t) {
         const int freedom = tile.valid_count[t] - tile.free_count[t];
         fit.chi_square[first + t] =
             freedom > 0 ? tile.chi_square[t] / static_cast<float>(freedom) : 0;
     }
+}
+
+// The whole fit again, of other noise and behind another calibration.
+std::vector<float> solve_replicate(const RectifiedCapture& capture,
+                                   const FitOptions& solve,
+                                   const Slab& slab,
+                                   Draw draw) {
+    const Design design = make_design(capture.planes, capture.drawn_optics[draw.replicate]);
+    std::vector<float> coeffs(slab.coeffs.size());
+    FitOptions same = solve;
+    same.solve.wants_sigma = false;
+    solve_lightfield(
+        design, same,
+        [&](TileRange rows) {
+            TileInput tile = capture.texels.read(rows);
+            add_noise(tile_layout(design, solve.channels, rows), rows, draw, tile);
+            return tile;
+        },
+        [&](const TileResult& tile) { copy_rows(slab, tile.rows, tile.coeffs, coeffs); });
+    return coeffs;
 }
 
 }  // namespace
@@ -126,14 +154,23 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
                        static_cast<std::size_t>(slab.image_count()) * slab.texel_count());
     slab.sigma.resize(slab.coeffs.size());
     fit.chi_square.resize(slab.texel_count());
+    // A replicate takes no sigmas and about half the time.
+    const double parts = 1 + 0.5 * static_cast<double>(capture.drawn_optics.size());
+    const auto progress = [&](double part, const std::string& what) {
+        if (options.progress)
+            options.progress(kMergeShare + (1 - kMergeShare) * part / parts, what);
+    };
     fit.report = solve_lightfield(
         design, solve, [&](TileRange rows) { return texels.read(rows); },
         [&](const TileResult& tile) { store(tile, slab, fit); },
-        [&](double fraction) {
-            if (options.progress)
-                options.progress(kMergeShare + (1 - kMergeShare) * fraction, "solve");
-        });
+        [&](double fraction) { progress(fraction, "solve"); });
     bound_sigma(slab);
+    for (std::size_t r = 0; r < capture.drawn_optics.size(); ++r) {
+        slab.replicates.push_back(
+            solve_replicate(capture, solve, slab, {options.seed, static_cast<std::uint32_t>(r)}));
+        progress(1 + 0.5 * static_cast<double>(r + 1),
+                 fmt::format("replicate {} of {}", r + 1, capture.drawn_optics.size()));
+    }
     fit.solve_s = now_s() - chosen_s;
     fit.lightfield.scale_sigma_rel = capture.scale_sigma_rel;
     fit.lightfield.slabs = {std::move(slab)};

@@ -88,6 +88,12 @@ void check(const LightField& lightfield, const std::string& where) {
         check_values(slab, slab.coeffs, place + ".coeffs");
         if (!slab.sigma.empty())
             check_values(slab, slab.sigma, place + ".sigma");
+        for (std::size_t r = 0; r < slab.replicates.size(); ++r)
+            check_values(slab, slab.replicates[r], fmt::format("{}.replicates[{}]", place, r));
+        if (slab.replicates.size() != lightfield.slabs.front().replicates.size())
+            throw Error{"bad light field", place + ".replicates",
+                        fmt::format("{}, as slab 0", lightfield.slabs.front().replicates.size()),
+                        fmt::format("{}", slab.replicates.size())};
     }
 }
 
@@ -100,6 +106,9 @@ std::vector<exr::Atlas<const float>> lightfield_atlases(const LightField& lightf
         if (!slab.sigma.empty())
             atlases.push_back(
                 image_atlas(part_name(k, "sigma"), slab, slab.texels, slab.sigma.data()));
+        for (std::size_t r = 0; r < slab.replicates.size(); ++r)
+            atlases.push_back(image_atlas(part_name(k, replicate_table(r)), slab, slab.texels,
+                                          slab.replicates[r].data()));
     }
     return atlases;
 }
@@ -136,7 +145,7 @@ Description read_lightfield_parts(exr::Reader& reader,
     for (const bool is_reading : {false, true}) {
         for (std::size_t k = 0; k < lightfield.slabs.size(); ++k) {
             Slab& slab = lightfield.slabs[k];
-            const auto take = [&](const char* table, std::vector<float>& values) {
+            const auto take = [&](const std::string& table, std::vector<float>& values) {
                 if (is_reading)
                     resize_large(values, slab.image_offset(slab.channels, 0));
                 exr::Atlas<float> atlas =
@@ -150,6 +159,9 @@ Description read_lightfield_parts(exr::Reader& reader,
             take("coeffs", slab.coeffs);
             if (description.has_sigma[k])
                 take("sigma", slab.sigma);
+            slab.replicates.resize(description.replicate_count[k]);
+            for (std::size_t r = 0; r < slab.replicates.size(); ++r)
+                take(replicate_table(r), slab.replicates[r]);
         }
     }
     return description;

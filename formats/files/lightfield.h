@@ -62,6 +62,9 @@ struct Slab {
     /// independent; a texel's channels rise and fall together (they come from the same rays or
     /// light), so that a color's sigmas add without quadrature.
     std::vector<float> sigma;
+    /// What fits of other noise and another calibration gave, each like coeffs; empty: none. The
+    /// spread of what is computed from them is its sigma, with all that texels share.
+    std::vector<std::vector<float>> replicates;
 
     int image_count() const { return grid.x * grid.y; }
     std::size_t texel_count() const {

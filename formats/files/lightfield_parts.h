@@ -13,6 +13,10 @@
 
 namespace nearfield {
 
+inline std::string replicate_table(std::size_t replicate) {
+    return "replicate" + std::to_string(replicate);
+}
+
 /// "slab0.coeffs": what a part of a slab is called.
 inline std::string part_name(std::size_t slab, const std::string& table) {
     return "slab" + std::to_string(slab) + "." + table;

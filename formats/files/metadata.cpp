@@ -77,20 +77,24 @@ Json describe_slab(const Slab& slab, Quantity quantity) {
     Json cells = Json::array();
     for (const std::array<double, 3>& cell : slab.profile.cells)
         cells.push_back(cell);
-    return {{"luminaire_from_slab", describe_pose(slab.luminaire_from_slab)},
-            {"delta_m", slab.delta_m},
-            {"grid", pair(slab.grid)},
-            {"pitch_m", pair(slab.pitch_m)},
-            {"u_center_m", pair(slab.u_center_m)},
-            {"texels", pair(slab.texels)},
-            {"s_min_m", pair(slab.s_min_m)},
-            {"s_max_m", pair(slab.s_max_m)},
-            {"basis", slab.profile.name},
-            {"profile_cells", cells},
-            {"weighting", slab.weighting == Weighting::Irradiance ? "irradiance" : "radiance"},
-            {"channels", slab.channels == 3 ? Json::array({"R", "G", "B"}) : Json::array({"Y"})},
-            {"coeffs_unit", coeffs_unit(quantity, slab.weighting)},
-            {"has_sigma", !slab.sigma.empty()}};
+    Json description = {
+        {"luminaire_from_slab", describe_pose(slab.luminaire_from_slab)},
+        {"delta_m", slab.delta_m},
+        {"grid", pair(slab.grid)},
+        {"pitch_m", pair(slab.pitch_m)},
+        {"u_center_m", pair(slab.u_center_m)},
+        {"texels", pair(slab.texels)},
+        {"s_min_m", pair(slab.s_min_m)},
+        {"s_max_m", pair(slab.s_max_m)},
+        {"basis", slab.profile.name},
+        {"profile_cells", cells},
+        {"weighting", slab.weighting == Weighting::Irradiance ? "irradiance" : "radiance"},
+        {"channels", slab.channels == 3 ? Json::array({"R", "G", "B"}) : Json::array({"Y"})},
+        {"coeffs_unit", coeffs_unit(quantity, slab.weighting)},
+        {"has_sigma", !slab.sigma.empty()}};
+    if (!slab.replicates.empty())
+        description["replicates"] = slab.replicates.size();
+    return description;
 }
 
 int parse_channels(const JsonField& field) {
@@ -274,6 +278,11 @@ Description parse_description(const std::string& text, const std::string& where)
         lightfield.slabs.push_back(parse_slab(slabs[k]));
         check_geometry(lightfield.slabs.back(), slabs[k].where());
         description.has_sigma.push_back(slabs[k].at("has_sigma").boolean());
+        constexpr int kMostReplicates = 1000;
+        description.replicate_count.push_back(
+            slabs[k].has("replicates")
+                ? static_cast<std::size_t>(slabs[k].at("replicates").integer(0, kMostReplicates))
+                : 0);
     }
     if (description.kind.kind == "luminaire")
         description.has_tables = root.at("has_tables").boolean();

@@ -22,7 +22,8 @@ std::string describe(const LightField& lightfield, const FileKind& kind, bool ha
 struct Description {
     FileKind kind;
     LightField lightfield;
-    std::vector<bool> has_sigma;  // a slab
+    std::vector<bool> has_sigma;               // a slab
+    std::vector<std::size_t> replicate_count;  // a slab
     bool has_tables = false;
 };
 

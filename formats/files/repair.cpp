@@ -34,10 +34,16 @@ void repair_image(std::span<float> values, Repairs& repairs) {
 
 Repairs repair(LightField& lightfield) {
     Repairs repairs;
-    for (Slab& slab : lightfield.slabs)
-        for (std::vector<float>* values : {&slab.coeffs, &slab.sigma})
-            for (std::size_t at = 0; at < values->size(); at += slab.texel_count())
-                repair_image({values->data() + at, slab.texel_count()}, repairs);
+    const auto repair_images = [&repairs](const Slab& slab, std::vector<float>& values) {
+        for (std::size_t at = 0; at < values.size(); at += slab.texel_count())
+            repair_image({values.data() + at, slab.texel_count()}, repairs);
+    };
+    for (Slab& slab : lightfield.slabs) {
+        repair_images(slab, slab.coeffs);
+        repair_images(slab, slab.sigma);
+        for (std::vector<float>& replicate : slab.replicates)
+            repair_images(slab, replicate);
+    }
     return repairs;
 }
 

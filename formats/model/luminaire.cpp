@@ -192,6 +192,84 @@ double intensity_scale(const Slab& slab, double cosine) {
                : cosine;
 }
 
+glm::dvec3 flux_of(const Slab& slab, const std::vector<float>& coeffs) {
+    const TexelFlux texel_flux(slab);
+    return sum_over_images(slab, [&](int m) {
+        Sums sums{};
+        for (int j = 0; j < slab.texels.y; ++j)
+            for (int i = 0; i < slab.texels.x; ++i) {
+                const auto at =
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(slab.texels.x) +
+                    static_cast<std::size_t>(i);
+                Sums c{};
+                for (int channel = 0; channel < slab.channels; ++channel)
+                    c[static_cast<std::size_t>(channel)] =
+                        static_cast<double>(coeffs[slab.image_offset(channel, m) + at]);
+                if (c == Sums{})
+                    continue;
+                const double weight = texel_flux(m % slab.grid.x, m / slab.grid.x, i, j);
+                for (std::size_t k = 0; k < c.size(); ++k)
+                    sums[k] += c[k] * weight;
+            }
+        return color(slab, sums);
+    });
+}
+
+glm::dvec3 irradiance_of(const Slab& slab,
+                         const std::vector<float>& coeffs,
+                         const Receiver& receiver) {
+    const glm::dvec3 p = receiver.position_m;
+    if (!(p.z > -slab.delta_m))
+        return glm::dvec3(0.0);
+    const AxisWindows x = make_windows(slab, 0, p.x, p.z);
+    const AxisWindows y = make_windows(slab, 1, p.y, p.z);
+    Sums sums{};
+    const std::size_t stride = slab.image_offset(1, 0);
+    for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
+        add_image(slab, coeffs.data() + slab.image_offset(0, m), stride, wx, wy, receiver.normal,
+                  sums.data());
+    });
+    const double scale = slab.weighting == Weighting::Irradiance ? square(slab.delta_m) : 1.0;
+    return glm::max(color(slab, sums) * scale, 0.0);
+}
+
+glm::dvec3 intensity_of(const Slab& slab, const std::vector<float>& coeffs, glm::dvec3 direction) {
+    const double cosine = glm::normalize(direction).z;
+    if (!(cosine > 0.0))
+        return glm::dvec3(0.0);
+    const AxisWindows x = make_far_windows(slab, 0, direction.x / direction.z);
+    const AxisWindows y = make_far_windows(slab, 1, direction.y / direction.z);
+    Sums sums{};
+    const std::size_t stride = slab.image_offset(1, 0);
+    const Slab plain_geometry = without_kernel(slab);
+    for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
+        add_image(plain_geometry, coeffs.data() + slab.image_offset(0, m), stride, wx, wy, kFacing,
+                  sums.data());
+    });
+    return color(slab, sums) * intensity_scale(slab, cosine);
+}
+
+bool has_replicates(const LightField& lightfield) {
+    return !lightfield.slabs.empty() && !lightfield.slabs.front().replicates.empty();
+}
+
+// About the fit itself, not about their mean: where coefficients may not be negative noise shifts
+// them too.
+template <typename OfReplicate>
+double spread_of_replicates(const LightField& lightfield,
+                            double fitted,
+                            const OfReplicate& of_replicate) {
+    const std::size_t count = lightfield.slabs.front().replicates.size();
+    double variance = 0.0;
+    for (std::size_t r = 0; r < count; ++r) {
+        double sum = 0.0;
+        for (const Slab& slab : lightfield.slabs)
+            sum += of_replicate(slab, slab.replicates[r]);
+        variance += square(sum - fitted) / static_cast<double>(count);
+    }
+    return std::sqrt(variance);
+}
+
 }  // namespace
 
 Receiver to_slab(const Slab& slab, const Receiver& receiver) {
@@ -232,26 +310,7 @@ glm::dvec3 radiance(const Slab& slab, glm::dvec2 u_m, glm::dvec2 s_m) {
 }
 
 glm::dvec3 flux(const Slab& slab) {
-    const TexelFlux texel_flux(slab);
-    return sum_over_images(slab, [&](int m) {
-        Sums sums{};
-        for (int j = 0; j < slab.texels.y; ++j)
-            for (int i = 0; i < slab.texels.x; ++i) {
-                const auto at =
-                    static_cast<std::size_t>(j) * static_cast<std::size_t>(slab.texels.x) +
-                    static_cast<std::size_t>(i);
-                Sums c{};
-                for (int channel = 0; channel < slab.channels; ++channel)
-                    c[static_cast<std::size_t>(channel)] =
-                        static_cast<double>(slab.coeffs[slab.image_offset(channel, m) + at]);
-                if (c == Sums{})
-                    continue;
-                const double weight = texel_flux(m % slab.grid.x, m / slab.grid.x, i, j);
-                for (std::size_t k = 0; k < c.size(); ++k)
-                    sums[k] += c[k] * weight;
-            }
-        return color(slab, sums);
-    });
+    return flux_of(slab, slab.coeffs);
 }
 
 glm::dvec3 flux(const LightField& lightfield) {
@@ -262,6 +321,11 @@ glm::dvec3 flux(const LightField& lightfield) {
 }
 
 double flux_sigma_y(const LightField& lightfield) {
+    if (has_replicates(lightfield))
+        return spread_of_replicates(lightfield, luminance(flux(lightfield)),
+                                    [](const Slab& slab, const std::vector<float>& coeffs) {
+                                        return luminance(flux_of(slab, coeffs));
+                                    });
     double variance = 0.0;
     for (const Slab& slab : lightfield.slabs) {
         if (slab.sigma.empty())
@@ -277,19 +341,7 @@ double flux_sigma_y(const LightField& lightfield) {
 }
 
 glm::dvec3 intensity(const Slab& slab, glm::dvec3 direction) {
-    const double cosine = glm::normalize(direction).z;
-    if (!(cosine > 0.0))
-        return glm::dvec3(0.0);
-    const AxisWindows x = make_far_windows(slab, 0, direction.x / direction.z);
-    const AxisWindows y = make_far_windows(slab, 1, direction.y / direction.z);
-    Sums sums{};
-    const std::size_t stride = slab.image_offset(1, 0);
-    const Slab plain_geometry = without_kernel(slab);
-    for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
-        add_image(plain_geometry, slab.coeffs.data() + slab.image_offset(0, m), stride, wx, wy,
-                  kFacing, sums.data());
-    });
-    return color(slab, sums) * intensity_scale(slab, cosine);
+    return intensity_of(slab, slab.coeffs, direction);
 }
 
 glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction) {
@@ -300,6 +352,17 @@ glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction) {
 }
 
 double intensity_sigma_y(const LightField& lightfield, glm::dvec3 direction) {
+    const double fitted = luminance(intensity(lightfield, direction));
+    const double common = lightfield.scale_sigma_rel * fitted;
+    if (has_replicates(lightfield))
+        return std::hypot(
+            common,
+            spread_of_replicates(
+                lightfield, fitted, [&](const Slab& slab, const std::vector<float>& coeffs) {
+                    return luminance(intensity_of(
+                        slab, coeffs,
+                        glm::transpose(slab.luminaire_from_slab.rotation) * direction));
+                }));
     double variance = 0.0;
     for (const Slab& slab : lightfield.slabs) {
         const glm::dvec3 d = glm::transpose(slab.luminaire_from_slab.rotation) * direction;
@@ -316,24 +379,11 @@ double intensity_sigma_y(const LightField& lightfield, glm::dvec3 direction) {
                         });
         });
     }
-    const double common = lightfield.scale_sigma_rel * luminance(intensity(lightfield, direction));
     return std::sqrt(variance + square(common));
 }
 
 glm::dvec3 irradiance(const Slab& slab, const Receiver& receiver) {
-    const glm::dvec3 p = receiver.position_m;
-    if (!(p.z > -slab.delta_m))
-        return glm::dvec3(0.0);
-    const AxisWindows x = make_windows(slab, 0, p.x, p.z);
-    const AxisWindows y = make_windows(slab, 1, p.y, p.z);
-    Sums sums{};
-    const std::size_t stride = slab.image_offset(1, 0);
-    for_each_image(slab, x, y, [&](int m, const AxisWindow& wx, const AxisWindow& wy) {
-        add_image(slab, slab.coeffs.data() + slab.image_offset(0, m), stride, wx, wy,
-                  receiver.normal, sums.data());
-    });
-    const double scale = slab.weighting == Weighting::Irradiance ? square(slab.delta_m) : 1.0;
-    return glm::max(color(slab, sums) * scale, 0.0);
+    return irradiance_of(slab, slab.coeffs, receiver);
 }
 
 glm::dvec3 irradiance(const LightField& lightfield, const Receiver& receiver) {
@@ -344,6 +394,15 @@ glm::dvec3 irradiance(const LightField& lightfield, const Receiver& receiver) {
 }
 
 double irradiance_sigma_y(const LightField& lightfield, const Receiver& receiver) {
+    const double fitted = luminance(irradiance(lightfield, receiver));
+    const double common = lightfield.scale_sigma_rel * fitted;
+    if (has_replicates(lightfield))
+        return std::hypot(
+            common,
+            spread_of_replicates(
+                lightfield, fitted, [&](const Slab& slab, const std::vector<float>& coeffs) {
+                    return luminance(irradiance_of(slab, coeffs, to_slab(slab, receiver)));
+                }));
     double variance = 0.0;
     for (const Slab& slab : lightfield.slabs) {
         const Receiver local = to_slab(slab, receiver);
@@ -360,7 +419,6 @@ double irradiance_sigma_y(const LightField& lightfield, const Receiver& receiver
                 });
         });
     }
-    const double common = lightfield.scale_sigma_rel * luminance(irradiance(lightfield, receiver));
     return std::sqrt(variance + square(common));
 }
 

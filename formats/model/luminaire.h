@@ -32,8 +32,8 @@ glm::dvec3 radiance(const Slab& slab, glm::dvec2 u_m, glm::dvec2 s_m);
 glm::dvec3 flux(const Slab& slab);
 glm::dvec3 flux(const LightField& lightfield);
 
-/// Standard deviation of flux's Y from the coefficients' sigma (Slab::sigma; 0 where unknown),
-/// without the common scale's.
+/// Standard deviation of flux's Y from the spread of replicates, else from the coefficients' sigma
+/// (Slab::sigma; 0 where unknown) as if independent; without the common scale's.
 double flux_sigma_y(const LightField& lightfield);
 
 /// Far-field intensity in a direction (need not be of unit length).
@@ -46,7 +46,9 @@ glm::dvec3 intensity(const LightField& lightfield, glm::dvec3 direction);
 glm::dvec3 irradiance(const Slab& slab, const Receiver& receiver);
 glm::dvec3 irradiance(const LightField& lightfield, const Receiver& receiver);
 
-/// Standard deviation of irradiance's Y from the coefficients' sigma and the common scale's.
+/// Standard deviation of irradiance's Y from the spread of replicates, else from the coefficients'
+/// sigma as if independent, and the common scale's.
+/// Cost    of an irradiance a replicate; without them of one.
 double irradiance_sigma_y(const LightField& lightfield, const Receiver& receiver);
 
 /// Luminance (or radiometric total) of a color.

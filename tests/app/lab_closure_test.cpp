@@ -45,7 +45,8 @@ fit::RectifiedCapture measured(const LabTruth& truth, double scale, double shift
         true_optics(truth),
         fit::MeasuredTexels(".", planes.texels, static_cast<int>(texels.positions), {}, 1.0, {1.0}),
         {},
-        kScaleSigma};
+        kScaleSigma,
+        {}};
     for (glm::dvec3& position_m : capture.optics.position_m)
         position_m.y += shift_m;
     for (std::size_t k = 0; k < texels.positions; ++k) {

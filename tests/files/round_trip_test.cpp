@@ -32,6 +32,7 @@ void expect_equal(const Slab& a, const Slab& b) {
     EXPECT_EQ(a.channels, b.channels);
     EXPECT_EQ(a.coeffs, b.coeffs);
     EXPECT_EQ(a.sigma, b.sigma);
+    EXPECT_EQ(a.replicates, b.replicates);
 }
 
 void expect_equal(const LightField& a, const LightField& b) {
@@ -75,6 +76,21 @@ TEST(LightFieldFile, KeepsEveryFieldOfSeveralDifferentSlabs) {
     expect_equal(read_lightfield("several.lightfield.exr"), written);
     EXPECT_EQ(read_kind("several.lightfield.exr").kind, "lightfield");
     EXPECT_EQ(read_kind("several.lightfield.exr").format_version, kFormatVersion);
+}
+
+TEST(LightFieldFile, KeepsReplicatesInBothKindsOfFile) {
+    Luminaire written = sample_luminaire();
+    for (Slab& slab : written.lightfield.slabs)
+        for (int r = 0; r < 12; ++r) {
+            slab.replicates.push_back(slab.coeffs);
+            slab.replicates.back()[static_cast<std::size_t>(r)] += 0.5F;
+        }
+    write_lightfield(written.lightfield, std::nullopt, "replicates.lightfield.exr");
+    expect_equal(read_lightfield("replicates.lightfield.exr"), written.lightfield);
+    write_luminaire(written, std::nullopt, "replicates.luminaire.exr");
+    expect_equal(read_luminaire("replicates.luminaire.exr").lightfield, written.lightfield);
+    written.lightfield.slabs[1].replicates.pop_back();
+    EXPECT_THROW(write_lightfield(written.lightfield, std::nullopt, "odd.lightfield.exr"), Error);
 }
 
 TEST(LightFieldFile, KeepsShapesFromOneTexelToManyImages) {
