@@ -10,7 +10,7 @@
 namespace nearfield::fit {
 namespace {
 
-constexpr int kBlock = 4;  // columns at a time
+constexpr int kBlock = kColumnBlock;
 constexpr int kChunk = 8;  // rows at a time: with 4 columns, sums that fit the registers
 constexpr double kLeastPivot = 1e-14;
 
@@ -71,6 +71,11 @@ void factorize_block(BandMatrix& matrix, int j0, const double* diagonal) {
             for (int r = c; r < kBlock; ++r)
                 col[r] -= before[r] * before[c];
         }
+        if (matrix.is_out[static_cast<std::size_t>(j0 + c)] != 0) {
+            matrix.inverse_diagonal[static_cast<std::size_t>(j0 + c)] = 0.0;
+            std::fill(col, col + kBlock, 0.0);
+            continue;
+        }
         const double inverse = 1.0 / std::sqrt(std::max(col[c], kLeastPivot * diagonal[c]));
         matrix.inverse_diagonal[static_cast<std::size_t>(j0 + c)] = inverse;
         for (int r = c; r < kBlock; ++r)
@@ -127,16 +132,25 @@ void reset(BandMatrix& matrix, int size) {
     }
     for (int j = 0; j < matrix.padded; ++j)
         clear_beyond(matrix, j);
-    for (int j = size; j < matrix.padded; ++j)
-        column(matrix, j)[j] = 1.0;
+    matrix.is_out.assign(static_cast<std::size_t>(matrix.padded), 0);
+    std::fill(matrix.is_out.begin() + size, matrix.is_out.end(), 1);
+    matrix.factored = 0;
 }
 
-void factorize(BandMatrix& matrix) {
-    for (int j0 = 0; j0 < matrix.padded; j0 += kBlock) {
+void factorize(BandMatrix& matrix, int begin) {
+    int kept = matrix.padded;
+    while (kept > 0 && matrix.is_out[static_cast<std::size_t>(kept - 1)] != 0)
+        --kept;
+    matrix.factored = (kept + kBlock - 1) / kBlock * kBlock;
+    for (int j0 = begin; j0 < matrix.factored; j0 += kBlock) {
         double diagonal[kBlock];
         for (int c = 0; c < kBlock; ++c)
             diagonal[c] = column(matrix, j0 + c)[j0 + c];
         const int end = block_end(matrix, j0);
+        for (int j = j0; j < j0 + kBlock; ++j)
+            if (matrix.is_out[static_cast<std::size_t>(j)] != 0)
+                std::fill(column(matrix, j) + j0,
+                          column(matrix, j) + std::min(matrix.leading, end + kChunk), 0.0);
         for (int i = j0; i < end; i += kChunk)
             update_chunk(matrix, j0, i);
         factorize_block(matrix, j0, diagonal);
@@ -147,23 +161,23 @@ void factorize(BandMatrix& matrix) {
 
 void solve(const BandMatrix& factor, double* x) {
     const std::ptrdiff_t leading = factor.leading;
-    for (int j0 = 0; j0 < factor.padded; j0 += kBlock) {
+    for (int j0 = 0; j0 < factor.factored; j0 += kBlock) {
         const double* l = column(factor, j0);
         for (int c = 0; c < kBlock; ++c) {
             for (int d = 0; d < c; ++d)
                 x[j0 + c] -= l[d * leading + j0 + c] * x[j0 + d];
             x[j0 + c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
         }
-        const int end = block_end(factor, j0);
+        const int end = std::min(block_end(factor, j0), factor.factored);
         for (int i = j0 + kBlock; i < end; i += kBlock)
             at<Rows4>(x + i) -= at<Rows4>(l + i) * x[j0] + at<Rows4>(l + leading + i) * x[j0 + 1] +
                                 at<Rows4>(l + 2 * leading + i) * x[j0 + 2] +
                                 at<Rows4>(l + 3 * leading + i) * x[j0 + 3];
     }
-    for (int j0 = factor.padded - kBlock; j0 >= 0; j0 -= kBlock) {
+    for (int j0 = factor.factored - kBlock; j0 >= 0; j0 -= kBlock) {
         const double* l = column(factor, j0);
         Rows4 sum0 = Rows4::Zero(), sum1 = sum0, sum2 = sum0, sum3 = sum0;
-        const int end = block_end(factor, j0);
+        const int end = std::min(block_end(factor, j0), factor.factored);
         for (int i = j0 + kBlock; i < end; i += kBlock) {
             const Rows4 rows = at<Rows4>(x + i);
             sum0 += at<Rows4>(l + i) * rows;
@@ -183,7 +197,7 @@ void solve(const BandMatrix& factor, double* x) {
 
 void solve_lower(const BandMatrix& factor, int first_row, double* x) {
     const std::ptrdiff_t leading = factor.leading;
-    for (int j0 = first_row / kBlock * kBlock; j0 < factor.padded; j0 += kBlock) {
+    for (int j0 = first_row / kBlock * kBlock; j0 < factor.factored; j0 += kBlock) {
         const double* l = column(factor, j0);
         Lanes pivot[kBlock];
         for (int c = 0; c < kBlock; ++c) {
@@ -193,7 +207,7 @@ void solve_lower(const BandMatrix& factor, int first_row, double* x) {
             pivot[c] *= factor.inverse_diagonal[static_cast<std::size_t>(j0 + c)];
             at<Lanes>(lanes_of(x, j0 + c)) = pivot[c];
         }
-        const int end = std::min(block_end(factor, j0), factor.padded);
+        const int end = std::min(block_end(factor, j0), factor.factored);
         for (int i = j0 + kBlock; i < end; ++i)
             at<Lanes>(lanes_of(x, i)) -= pivot[0] * l[i] + pivot[1] * l[leading + i] +
                                          pivot[2] * l[2 * leading + i] +
@@ -203,12 +217,12 @@ void solve_lower(const BandMatrix& factor, int first_row, double* x) {
 
 void solve_upper(const BandMatrix& factor, double* x) {
     const std::ptrdiff_t leading = factor.leading;
-    for (int j0 = factor.padded - kBlock; j0 >= 0; j0 -= kBlock) {
+    for (int j0 = factor.factored - kBlock; j0 >= 0; j0 -= kBlock) {
         const double* l = column(factor, j0);
         Lanes sum[kBlock];
         for (int c = 0; c < kBlock; ++c)
             sum[c] = at<Lanes>(lanes_of(x, j0 + c));
-        const int end = std::min(block_end(factor, j0), factor.padded);
+        const int end = std::min(block_end(factor, j0), factor.factored);
         for (int i = j0 + kBlock; i < end; ++i) {
             const Lanes row = at<Lanes>(lanes_of(x, i));
             for (int c = 0; c < kBlock; ++c)

@@ -80,11 +80,8 @@ struct Design {
 ///         behind a filter keeps its quadrature nodes: 1.2 kB a measurement, texel column and row.
 Design make_design(const Slab& planes, const Optics& optics);
 
-/// Numbers of a row that the normal equations take at once.
-constexpr int kSpreadRow = 12;
-
 /// G of one texel: measurement k's entries stand in a rectangle of `height` rows of the basis grid,
-/// `stride` numbers each (a multiple of 4, zeros at the end).
+/// `stride` numbers each (a multiple of 8, zeros at the end).
 struct TexelDesign {
     glm::ivec2 grid{0};
     int measurement_count = 0;
@@ -92,8 +89,10 @@ struct TexelDesign {
     std::vector<int> first;     // [k]: basis function m of the rectangle's first entry
     std::vector<double> value;  // [k][height][stride]
 
-    int wide = 0;                // a row of the grid, rounded up to kSpreadRow
-    std::vector<double> spread;  // [k][height][wide]: the rectangles' rows at their columns
+    /// Measurements by their rectangle's first column on the grid, then by its first row; where
+    /// those of a column and row begin among them, and an end.
+    std::vector<int> by_corner;
+    std::vector<int> corner_begin;  // [column * grid.y + row]
 
     std::size_t block(int k) const {
         return static_cast<std::size_t>(k) * static_cast<std::size_t>(height * stride);

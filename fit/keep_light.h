@@ -18,7 +18,7 @@
 
 namespace nearfield::fit {
 
-/// In      work, fit: as solve_texel or solve_again left them for these data
+/// In      work, fit: as solve_texel left them for these data
 /// Out     fit: coefficients, sigma and chi-square of the kept light; work.residual: its residuals,
 ///         where there is a weight.
 ///         Where the data add up to nothing or less, all stays as it is.

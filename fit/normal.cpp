@@ -20,96 +20,89 @@ Eigen::Map<const Four> four(const double* p) {
     return Eigen::Map<const Four>(p);
 }
 
-// A tile of N: kTileColumns columns of kTileRows rows, sums that fit the registers.
+// A tile of N: sums that fit the registers.
 constexpr int kTileColumns = 4;
-constexpr int kTileRows = kSpreadRow;
-
-// One measurement's share of N between two rows of the basis grid: weight left right^T.
-struct RowPair {
-    const double* left = nullptr;
-    const double* right = nullptr;
-    double weight = 0;
-    int begin = 0;  // first column that is not 0
-};
-
-bool is_apart(const RowPair& pair, int width, int begin, int count) {
-    return pair.begin + width <= begin || pair.begin >= begin + count;
-}
+constexpr int kTileRows = 2 * kVector;
 
 struct TileColumn {
-    Four low = Four::Zero(), middle = Four::Zero(), high = Four::Zero();
+    Four low = Four::Zero(), high = Four::Zero();
 
     void add(const TileColumn& right, double factor) {
         low += right.low * factor;
-        middle += right.middle * factor;
         high += right.high * factor;
     }
-    void write(double* to) const {
-        four(to) = low;
-        four(to + kVector) = middle;
-        four(to + 2 * std::ptrdiff_t{kVector}) = high;
+    void add_to(double* to) const {
+        four(to) += low;
+        four(to + kVector) += high;
     }
 };
 
-// Sums a tile over all measurements and writes its first `count` columns. Four variables, not an
-// array: an array stays in memory.
-void write_tile(const std::vector<RowPair>& pairs,
-                int width,
-                glm::ivec2 begin,
-                double* to,
-                std::ptrdiff_t leading,
-                int count) {
+// Measurements whose rectangles begin at the same column, and cover two rows of the grid.
+struct RowPairs {
+    std::span<const std::ptrdiff_t> origin;  // of each: where row 0 of the grid would be
+    const double* weighted;                  // G with weights, at the left row and first column
+    const double* right;                     // G at the right row and first row of N
+};
+
+// Adds the sum over measurements of left right^T to the first `count` columns of a tile. Four
+// variables, not an array: an array stays in memory.
+void add_tile(const RowPairs& pairs, double* to, std::ptrdiff_t leading, int count) {
     TileColumn sum0, sum1, sum2, sum3;
-    for (const RowPair& pair : pairs) {
-        if (is_apart(pair, width, begin.x, kTileColumns) ||
-            is_apart(pair, width, begin.y, kTileRows))
-            continue;
-        const double* r = pair.right + begin.y;
-        const TileColumn right{four(r), four(r + kVector), four(r + 2 * std::ptrdiff_t{kVector})};
-        const double* left = pair.left + begin.x;
-        sum0.add(right, pair.weight * left[0]);
-        sum1.add(right, pair.weight * left[1]);
-        sum2.add(right, pair.weight * left[2]);
-        sum3.add(right, pair.weight * left[3]);
+    for (const std::ptrdiff_t origin : pairs.origin) {
+        const double* r = pairs.right + origin;
+        const TileColumn right{four(r), four(r + kVector)};
+        const double* left = pairs.weighted + origin;
+        sum0.add(right, left[0]);
+        sum1.add(right, left[1]);
+        sum2.add(right, left[2]);
+        sum3.add(right, left[3]);
     }
-    sum0.write(to);
+    sum0.add_to(to);
     if (count > 1)
-        sum1.write(to + leading);
+        sum1.add_to(to + leading);
     if (count > 2)
-        sum2.write(to + 2 * leading);
+        sum2.add_to(to + 2 * leading);
     if (count > 3)
-        sum3.write(to + 3 * leading);
+        sum3.add_to(to + 3 * leading);
 }
 
-// Part of N between rows `row` and `other` >= row of the basis grid. What a tile writes past the
-// grid's last column is 0 or written again by the next row's.
-void write_rows(const TexelDesign& texel,
-                const std::vector<glm::ivec2>& corner,
-                std::span<const double> weight,
-                int row,
-                int other,
-                std::vector<RowPair>& pairs,
-                NormalEquations& normal) {
-    const int columns = texel.grid.x;
-    const auto wide = static_cast<std::size_t>(texel.wide);
-    pairs.clear();
-    for (int k = 0; k < texel.measurement_count; ++k) {
-        const int first_row = corner[static_cast<std::size_t>(k)].y;
-        const double w = weight[static_cast<std::size_t>(k)];
-        if (row < first_row || other >= first_row + texel.height || w == 0.0)
+// Part of N between rows `row` and `other` >= row of the basis grid. What a tile adds past a
+// rectangle's last column is 0.
+void add_rows(const TexelDesign& texel,
+              const std::vector<std::ptrdiff_t>& origin,
+              int row,
+              int other,
+              NormalEquations& normal) {
+    const int columns = texel.grid.x, rows = texel.grid.y;
+    const std::ptrdiff_t stride = texel.stride, leading = normal.leading;
+    for (int x = 0; x + texel.width <= columns; ++x) {
+        const auto begin = texel.corner_begin[static_cast<std::size_t>(
+            x * rows + std::max(0, other - texel.height + 1))];
+        const auto end = texel.corner_begin[static_cast<std::size_t>(x * rows + row + 1)];
+        if (begin == end)
             continue;
-        const auto rows = static_cast<std::size_t>(k * texel.height);
-        pairs.push_back({&texel.spread[(rows + static_cast<std::size_t>(row - first_row)) * wide],
-                         &texel.spread[(rows + static_cast<std::size_t>(other - first_row)) * wide],
-                         w, texel.first[static_cast<std::size_t>(k)] % columns});
+        for (int p = 0; p < texel.width; p += kTileColumns)
+            for (int q = 0; q < texel.stride; q += kTileRows)
+                add_tile({std::span(origin).subspan(static_cast<std::size_t>(begin),
+                                                    static_cast<std::size_t>(end - begin)),
+                          normal.weighted.data() + row * stride + p,
+                          texel.value.data() + other * stride + q},
+                         normal.lower.data() + (row * columns + x + p) * leading +
+                             (other * columns + x + q),
+                         leading, std::min(kTileColumns, texel.width - p));
     }
-    for (int p = 0; p < columns; p += kTileColumns)
-        for (int q = 0; q < columns; q += kTileRows)
-            write_tile(pairs, texel.width, {p, q},
-                       &normal.lower[static_cast<std::size_t>(row * columns + p) *
-                                         static_cast<std::size_t>(normal.leading) +
-                                     static_cast<std::size_t>(other * columns + q)],
-                       normal.leading, std::min(kTileColumns, columns - p));
+}
+
+void fill_weighted(const TexelDesign& texel,
+                   std::span<const double> weight,
+                   NormalEquations& normal) {
+    normal.weighted.resize(texel.value.size());
+    for (int k = 0; k < texel.measurement_count; ++k) {
+        const double w = weight[static_cast<std::size_t>(k)];
+        const std::size_t end = texel.block(k + 1);
+        for (std::size_t at = texel.block(k); at < end; at += kVector)
+            four(&normal.weighted[at]) = four(&texel.value[at]) * w;
+    }
 }
 
 double dot_block(const TexelDesign& texel, int k, const double* coeffs) {
@@ -172,6 +165,24 @@ void add_penalty(const Penalty& penalty, NormalEquations& normal) {
             }
 }
 
+// The right side and the data's length.
+void set_data(const TexelDesign& texel,
+              std::span<const double> b,
+              std::span<const double> weight,
+              NormalEquations& normal) {
+    normal.rhs.assign(static_cast<std::size_t>(normal.leading), 0.0);
+    double data_norm2 = 0.0;
+    for (int k = 0; k < texel.measurement_count; ++k) {
+        const double w = weight[static_cast<std::size_t>(k)];
+        const double datum = b[static_cast<std::size_t>(k)];
+        if (w == 0.0)
+            continue;
+        data_norm2 += w * datum * datum;
+        add_block(texel, k, w * datum, normal.rhs.data());
+    }
+    normal.data_norm = std::sqrt(data_norm2);
+}
+
 }  // namespace
 
 Penalty difference_penalty(glm::ivec2 grid, int order) {
@@ -196,45 +207,28 @@ void form_normal(const TexelDesign& texel,
                  double lambda,
                  NormalEquations& normal) {
     normal.size = texel.grid.x * texel.grid.y;
-    normal.leading =
-        (normal.size + std::max(texel.stride, kTileRows) + kVector - 1) / kVector * kVector;
+    normal.leading = (normal.size + texel.stride + kVector - 1) / kVector * kVector;
     const auto n = static_cast<std::size_t>(normal.size);
     const auto leading = static_cast<std::size_t>(normal.leading);
     normal.lower.assign(n * leading, 0.0);
     normal.valid_count = static_cast<int>(
         std::count_if(weight.begin(), weight.end(), [](double w) { return w > 0.0; }));
-    std::vector<RowPair> pairs;
-    pairs.reserve(weight.size());
-    std::vector<glm::ivec2> corner;  // divided once: 42 pairs of rows look at all measurements
-    corner.reserve(weight.size());
-    for (const int first : texel.first)
-        corner.emplace_back(first % texel.grid.x, first / texel.grid.x);
+    fill_weighted(texel, weight, normal);
+    std::vector<std::ptrdiff_t> origin;
+    origin.reserve(weight.size());
+    for (const int k : texel.by_corner)
+        origin.push_back(static_cast<std::ptrdiff_t>(texel.block(k)) -
+                         texel.first[static_cast<std::size_t>(k)] / texel.grid.x *
+                             std::ptrdiff_t{texel.stride});
     for (int row = 0; row < texel.grid.y; ++row)
         for (int other = row; other < std::min(row + texel.height, texel.grid.y); ++other)
-            write_rows(texel, corner, weight, row, other, pairs, normal);
+            add_rows(texel, origin, row, other, normal);
     set_data(texel, b, weight, normal);
     fill_penalty_weights(penalty, lambda, normal);
     add_penalty(penalty, normal);
     normal.norm.resize(n);
     for (std::size_t m = 0; m < n; ++m)
         normal.norm[m] = std::sqrt(normal.lower[m * leading + m]);
-}
-
-void set_data(const TexelDesign& texel,
-              std::span<const double> b,
-              std::span<const double> weight,
-              NormalEquations& normal) {
-    normal.rhs.assign(static_cast<std::size_t>(normal.leading), 0.0);
-    double data_norm2 = 0.0;
-    for (int k = 0; k < texel.measurement_count; ++k) {
-        const double w = weight[static_cast<std::size_t>(k)];
-        const double datum = b[static_cast<std::size_t>(k)];
-        if (w == 0.0)
-            continue;
-        data_norm2 += w * datum * datum;
-        add_block(texel, k, w * datum, normal.rhs.data());
-    }
-    normal.data_norm = std::sqrt(data_norm2);
 }
 
 void fill_gradient(const std::vector<double>& coeffs,

@@ -25,11 +25,12 @@ Penalty difference_penalty(glm::ivec2 grid, int order);
 
 struct NormalEquations {
     int size = 0;
-    int leading = 0;            // distance of columns
-    std::vector<double> lower;  // N, column by column; entries above the diagonal mean nothing
-    std::vector<double> rhs;    // G^T W b, and zeros to `leading`
-    std::vector<double> norm;   // [m]: sqrt(N_mm); 0: nothing sees it
-    double data_norm = 0;       // sqrt(b^T W b)
+    int leading = 0;               // distance of columns
+    std::vector<double> lower;     // N, column by column; entries above the diagonal mean nothing
+    std::vector<double> rhs;       // G^T W b, and zeros to `leading`
+    std::vector<double> norm;      // [m]: sqrt(N_mm); 0: nothing sees it
+    double data_norm = 0;          // sqrt(b^T W b)
+    std::vector<double> weighted;  // W G, as TexelDesign::value
     std::vector<double> penalty_weight;  // [difference]: lambda q; empty: lambda is 0
     int valid_count = 0;                 // of measurements with weight
 
@@ -47,12 +48,6 @@ void form_normal(const TexelDesign& texel,
                  std::span<const double> weight,
                  double lambda,
                  NormalEquations& normal);
-
-/// Writes another right side: of other data with the same weights.
-void set_data(const TexelDesign& texel,
-              std::span<const double> b,
-              std::span<const double> weight,
-              NormalEquations& normal);
 
 /// Half the gradient of what is minimized, N c - G^T W b, from the columns of N down to
 /// row_end[column].

@@ -53,33 +53,37 @@ LaneSums squared_norms(const Workspace& work) {
 }
 
 void clear_lanes(Workspace& work) {
-    work.lanes.assign(static_cast<std::size_t>(work.factor.padded * kLanes), 0.0);
+    work.lanes.assign(static_cast<std::size_t>(work.factor.matrix.padded * kLanes), 0.0);
+}
+
+std::size_t coefficient_at(const Workspace& work, int place) {
+    return static_cast<std::size_t>(work.factor.order[static_cast<std::size_t>(place)]);
 }
 
 // work.lanes, by place in the factor, over all coefficients.
 void spread_lanes(const Workspace& work, double sign, std::vector<double>& z) {
     std::fill(z.begin(), z.end(), 0.0);
-    for (std::size_t i = 0; i < work.free_index.size(); ++i)
-        for (std::size_t lane = 0; lane < kLanes; ++lane)
-            z[static_cast<std::size_t>(work.free_index[i]) * kLanes + lane] =
-                sign * work.lanes[i * kLanes + lane];
+    for (const int place : work.factor.free_place) {
+        const double* from = &work.lanes[static_cast<std::size_t>(place) * kLanes];
+        double* to = &z[coefficient_at(work, place) * kLanes];
+        for (int lane = 0; lane < kLanes; ++lane)
+            to[lane] = sign * from[lane];
+    }
 }
 
 void fill_free(const Noise& noise, Workspace& work, std::vector<double>& z, TexelFit& fit) {
-    const int count = work.factor.size;
-    for (int begin = 0; begin < count; begin += kLanes) {
-        const int lanes = std::min(kLanes, count - begin);
+    const std::vector<int>& places = work.factor.free_place;
+    for (std::size_t begin = 0; begin < places.size(); begin += kLanes) {
+        const std::size_t lanes = std::min<std::size_t>(kLanes, places.size() - begin);
         clear_lanes(work);
-        for (int lane = 0; lane < lanes; ++lane)
-            work.lanes[static_cast<std::size_t>((begin + lane) * kLanes + lane)] = 1.0;
-        solve_lower(work.factor, begin, work.lanes.data());
-        solve_upper(work.factor, work.lanes.data());
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            work.lanes[static_cast<std::size_t>(places[begin + lane]) * kLanes + lane] = 1.0;
+        solve_lower(work.factor.matrix, places[begin], work.lanes.data());
+        solve_upper(work.factor.matrix, work.lanes.data());
         spread_lanes(work, 1.0, z);
         const LaneSums variance = noise_through(noise, z);
-        for (int lane = 0; lane < lanes; ++lane)
-            fit.sigma[static_cast<std::size_t>(
-                work.free_index[static_cast<std::size_t>(begin + lane)])] =
-                std::sqrt(variance[static_cast<std::size_t>(lane)]);
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            fit.sigma[coefficient_at(work, places[begin + lane])] = std::sqrt(variance[lane]);
     }
 }
 
@@ -95,13 +99,14 @@ void fill_bound(const Noise& noise,
     for (std::size_t begin = 0; begin < bound.size(); begin += kLanes) {
         const std::size_t lanes = std::min<std::size_t>(kLanes, bound.size() - begin);
         clear_lanes(work);
-        for (std::size_t i = 0; i < work.free_index.size(); ++i)
+        for (const int place : work.factor.free_place)
             for (std::size_t lane = 0; lane < lanes; ++lane)
-                work.lanes[i * kLanes + lane] =
-                    symmetric_entry(work.normal, work.free_index[i], bound[begin + lane]);
-        solve_lower(work.factor, 0, work.lanes.data());
+                work.lanes[static_cast<std::size_t>(place) * kLanes + lane] =
+                    symmetric_entry(work.normal, static_cast<int>(coefficient_at(work, place)),
+                                    bound[begin + lane]);
+        solve_lower(work.factor.matrix, 0, work.lanes.data());
         const LaneSums explained = squared_norms(work);
-        solve_upper(work.factor, work.lanes.data());
+        solve_upper(work.factor.matrix, work.lanes.data());
         spread_lanes(work, -1.0, z);
         for (std::size_t lane = 0; lane < lanes; ++lane)
             z[static_cast<std::size_t>(bound[begin + lane]) * kLanes + lane] = 1.0;
@@ -140,8 +145,8 @@ void fill_sigma(const TexelDesign& texel,
     const std::size_t n = work.normal.norm.size();
     fit.sigma.assign(n, std::numeric_limits<double>::infinity());
     std::vector<bool> is_free(n, false);
-    for (const int m : work.free_index)
-        is_free[static_cast<std::size_t>(m)] = true;
+    for (const int place : work.factor.free_place)
+        is_free[coefficient_at(work, place)] = true;
     std::vector<int> bound;
     for (std::size_t m = 0; m < n; ++m)
         if (!is_free[m] && work.normal.norm[m] > 0.0)

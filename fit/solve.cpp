@@ -15,9 +15,6 @@ namespace {
 
 // Rounding of a gradient computed in double, as a cosine; ten times the largest that was seen.
 constexpr double kGradientRounding = 1e-13;
-// Added to N's diagonal, relative: makes N definite where measurements miss and lambda is 0. Above
-// rounding (n eps = 2e-14), far below what data determine.
-constexpr double kRidge = 1e-12;
 // Exchanges of all at once that may fail to lessen the breaches, before one at a time.
 constexpr int kPatience = 4;
 
@@ -40,65 +37,11 @@ void check_data(const Problem& problem) {
     }
 }
 
-// A basis function before all that share a measurement or a difference with m, rising with m: hence
-// 0 in the first rows, where the reach is cut off.
-int band_begin(const Problem& problem, int m) {
-    const int columns = problem.texel.grid.x;
-    const int reach_x = std::max(problem.texel.width - 1, problem.penalty.reach);
-    const int reach_y = std::max(problem.texel.height - 1, problem.penalty.reach);
-    const int row = m / columns - reach_y;
-    return row < 0 ? 0 : row * columns + std::max(0, m % columns - reach_x);
-}
-
-// One past the last row of each column of N.
-void fill_row_end(const Problem& problem, Workspace& work) {
-    work.row_end.resize(static_cast<std::size_t>(work.normal.size));
-    int end = 0;
-    for (int m = 0; m < work.normal.size; ++m) {
-        while (end < work.normal.size && band_begin(problem, end) <= m)
-            ++end;
-        work.row_end[static_cast<std::size_t>(m)] = end;
-    }
-}
-
-// The free coefficients' part of N.
-void gather_free(const Problem& problem, Workspace& work, const TexelFit& fit) {
-    work.free_index.clear();
-    for (std::size_t m = 0; m < fit.is_free.size(); ++m)
-        if (fit.is_free[m] != 0)
-            work.free_index.push_back(static_cast<int>(m));
-    const std::vector<int>& index = work.free_index;
-    BandMatrix& matrix = work.factor;
-    matrix.first.resize(index.size());
-    int begin = 0;
-    for (std::size_t i = 0; i < index.size(); ++i) {
-        const int least = band_begin(problem, index[i]);
-        while (index[static_cast<std::size_t>(begin)] < least)
-            ++begin;
-        matrix.first[i] = begin;
-    }
-    reset(matrix, static_cast<int>(index.size()));
-    for (std::size_t j = 0; j < index.size(); ++j) {
-        double* to = &matrix.value[j * static_cast<std::size_t>(matrix.leading)];
-        const auto end = static_cast<std::size_t>(matrix.row_end[j]);
-        for (std::size_t i = j; i < end; ++i)
-            to[i] = work.normal.entry(index[i], index[j]);
-        to[j] *= 1.0 + kRidge;
-    }
-}
-
 // The minimum over the free coefficients, signs as they come.
-void solve_free(const Problem& problem, Workspace& work, TexelFit& fit) {
-    gather_free(problem, work, fit);
-    factorize(work.factor);
+void solve_free(Workspace& work, TexelFit& fit) {
+    follow(work.band, work.normal, fit.is_free, work.factor);
     ++fit.factorizations;
-    work.right_side.assign(static_cast<std::size_t>(work.factor.vector_size()), 0.0);
-    for (std::size_t i = 0; i < work.free_index.size(); ++i)
-        work.right_side[i] = work.normal.rhs[static_cast<std::size_t>(work.free_index[i])];
-    solve(work.factor, work.right_side.data());
-    std::fill(work.coeffs_padded.begin(), work.coeffs_padded.end(), 0.0);
-    for (std::size_t i = 0; i < work.free_index.size(); ++i)
-        work.coeffs_padded[static_cast<std::size_t>(work.free_index[i])] = work.right_side[i];
+    minimum_of_free(work.factor, work.normal.rhs, work.right_side, work.coeffs_padded);
 }
 
 // Whether coefficient m breaks a condition of the minimum: free and negative, or at the bound and
@@ -112,12 +55,12 @@ bool is_breach(const Workspace& work, const TexelFit& fit, std::size_t m) {
 
 // Block principal pivoting: all coefficients that break a condition change sides at once. True at
 // the minimum; false where that has not lessened their number for a while.
-bool exchange_blocks(const Problem& problem, Workspace& work, TexelFit& fit) {
+bool exchange_blocks(Workspace& work, TexelFit& fit) {
     std::size_t fewest = fit.is_free.size() + 1;
     std::vector<std::size_t>& breaches = work.breaches;
     for (int patience = kPatience; patience > 0;) {
-        solve_free(problem, work, fit);
-        fill_gradient(work.coeffs_padded, work.row_end, work.normal, work.gradient);
+        solve_free(work, fit);
+        fill_gradient(work.coeffs_padded, work.band.row_end, work.normal, work.gradient);
         breaches.clear();
         for (std::size_t m = 0; m < fit.is_free.size(); ++m)
             if (is_breach(work, fit, m))
@@ -174,7 +117,7 @@ std::optional<std::size_t> steepest(const Workspace& work, const TexelFit& fit) 
 // The primal active-set method from a feasible start: one coefficient at a time, and what is
 // minimized falls with every step. For nearly singular problems, on which exchanges of blocks go
 // round in circles.
-bool exchange_singly(const Problem& problem, Workspace& work, TexelFit& fit) {
+bool exchange_singly(Workspace& work, TexelFit& fit) {
     std::vector<double> coeffs(fit.is_free.size());
     for (std::size_t m = 0; m < coeffs.size(); ++m) {
         coeffs[m] = std::max(0.0, work.coeffs_padded[m]);
@@ -182,10 +125,10 @@ bool exchange_singly(const Problem& problem, Workspace& work, TexelFit& fit) {
     }
     const int most_steps = 20 * work.normal.size;
     for (int step = 0; step < most_steps; ++step) {
-        solve_free(problem, work, fit);
+        solve_free(work, fit);
         if (!step_feasibly(work, fit, coeffs))
             continue;
-        fill_gradient(work.coeffs_padded, work.row_end, work.normal, work.gradient);
+        fill_gradient(work.coeffs_padded, work.band.row_end, work.normal, work.gradient);
         const std::optional<std::size_t> next = steepest(work, fit);
         if (!next)
             return true;
@@ -210,15 +153,21 @@ double kkt_residual(const Workspace& work) {
 void minimize(const Problem& problem, Workspace& work, TexelFit& fit) {
     const auto n = static_cast<std::size_t>(work.normal.size);
     work.coeffs_padded.resize(static_cast<std::size_t>(work.normal.leading));
-    if (fit.is_free.size() != n)
+    if (fit.is_free.size() != n) {
         fit.is_free.assign(n, 1);
+        fit.coeffs.clear();
+    }
     for (std::size_t m = 0; m < n; ++m)
         if (work.normal.norm[m] == 0.0)
             fit.is_free[m] = 0;
     fit.factorizations = 0;
-    fill_row_end(problem, work);
+    const TexelDesign& texel = problem.texel;
+    fill_band(texel.grid,
+              glm::max(glm::ivec2(texel.width, texel.height) - 1, problem.penalty.reach),
+              work.band);
+    start(work.band, work.normal, fit.is_free, fit.coeffs, work.factor);
 
-    fit.has_converged = exchange_blocks(problem, work, fit) || exchange_singly(problem, work, fit);
+    fit.has_converged = exchange_blocks(work, fit) || exchange_singly(work, fit);
     for (double& c : work.coeffs_padded)
         c = std::max(c, 0.0);
     fill_gradient(problem.texel, problem.penalty, problem.b, problem.weight, work.normal,
@@ -228,7 +177,7 @@ void minimize(const Problem& problem, Workspace& work, TexelFit& fit) {
                       work.coeffs_padded.begin() + static_cast<std::ptrdiff_t>(n));
     fit.kkt_rel = kkt_residual(work);
     fit.valid_count = work.normal.valid_count;
-    fit.free_count = static_cast<int>(work.free_index.size());
+    fit.free_count = static_cast<int>(work.factor.free_place.size());
     fit.chi_square = 0.0;
     for (std::size_t k = 0; k < problem.b.size(); ++k)
         fit.chi_square += problem.weight[k] * work.residual[k] * work.residual[k];
@@ -250,17 +199,6 @@ void solve_texel(const TexelDesign& texel,
     minimize(problem, work, fit);
     if (options.wants_sigma)
         fill_sigma(texel, weight, noise_share, work, fit);
-}
-
-void solve_again(const TexelDesign& texel,
-                 const Penalty& penalty,
-                 std::span<const double> b,
-                 std::span<const double> weight,
-                 Workspace& work,
-                 TexelFit& fit) {
-    const Problem problem{texel, penalty, b, weight};
-    set_data(texel, b, weight, work.normal);
-    minimize(problem, work, fit);
 }
 
 }  // namespace nearfield::fit

@@ -10,18 +10,19 @@
 /// not change when light and noise are scaled.
 ///
 /// Method    Block principal pivoting on the normal equations: the free coefficients are solved for
-///           by a banded Cholesky factorization; those that break a condition change sides all at
-///           once. Where that goes round in circles (nearly singular problems) the primal
-///           active-set method ends it. The residual of the Karush-Kuhn-Tucker conditions proves
-///           the minimum; it is computed from G and b, not from the factored matrix.
+///           by a Cholesky factor that follows them (free_factor.h); those that break a condition
+///           change sides all at once. Where that goes round in circles (nearly singular problems)
+///           the primal active-set method ends it. The residual of the Karush-Kuhn-Tucker
+///           conditions proves the minimum; it is computed from G and b, not from the factored
+///           matrix.
 /// Source    Portugal, Judice, Vicente, "A comparison of block pivoting and interior-point
 ///           algorithms for linear least squares problems with nonnegative variables", 1994; Kim
 ///           and Park, "Fast nonnegative matrix factorization: an active-set-like method and
 ///           comparisons", 2011.
 #pragma once
 
-#include "fit/band_cholesky.h"
 #include "fit/design.h"
+#include "fit/free_factor.h"
 #include "fit/normal.h"
 
 #include <cstdint>
@@ -56,9 +57,8 @@ struct TexelFit {
 /// Memory of a solver; one a thread, for any number of texels.
 struct Workspace {
     NormalEquations normal;
-    BandMatrix factor;
-    std::vector<int> free_index;  // [position in factor]: m
-    std::vector<int> row_end;     // [m]: one past the last row of a column of N
+    Band band;
+    FreeFactor factor;
     std::vector<std::size_t> breaches;
     std::vector<double> coeffs_padded, gradient, residual, right_side, lanes;
 };
@@ -66,9 +66,8 @@ struct Workspace {
 /// Fits b with weights w, [k]. The texel's G may be shared by all channels. noise_share: of 1 / w,
 /// what is noise and makes sigma, [k]; empty: all of it.
 /// Throws Error if a value is not finite or a weight is negative or not finite.
-/// Cost    11 x 9 positions, B-splines, 4.3 factorizations: 90 to 150 us of a core on a busy
-/// machine
-///         (tests/bench/fit_bench.cpp); O(n band^2) a factorization for larger grids.
+/// Cost    11 x 9 positions, B-splines, 4.3 sets of free coefficients: 80 to 110 us of a core on a
+///         busy machine (`nearfield bench fit`): a quarter forms N, a third factors it.
 void solve_texel(const TexelDesign& texel,
                  const Penalty& penalty,
                  std::span<const double> b,
@@ -77,13 +76,5 @@ void solve_texel(const TexelDesign& texel,
                  Workspace& work,
                  TexelFit& fit,
                  std::span<const double> noise_share = {});
-
-/// Fits other data with the weights, lambda and texel of the last solve_texel in `work`; no sigma.
-void solve_again(const TexelDesign& texel,
-                 const Penalty& penalty,
-                 std::span<const double> b,
-                 std::span<const double> weight,
-                 Workspace& work,
-                 TexelFit& fit);
 
 }  // namespace nearfield::fit

@@ -2,7 +2,6 @@
 #include "fit/stream.h"
 
 #include "fit/keep_light.h"
-#include "fit/noise.h"
 #include "formats/files/error.h"
 
 #include <fmt/format.h>
@@ -21,9 +20,7 @@ struct Scratch {
     TexelDesign texel;
     Workspace work;
     TexelData data;
-    std::vector<double> drawn;
     std::vector<TexelFit> fit;  // [channel]: where the next texel starts
-    TexelFit replicate;
 };
 
 struct TileJob {
@@ -45,28 +42,6 @@ void store(const TileJob& job,
     for (std::size_t m = 0; m < job.layout.functions; ++m)
         images[job.layout.at(channel, m, job.layout.functions, row, i)] =
             static_cast<float>(values[m]);
-}
-
-// Fits of what the fitted light would give with other noise.
-void solve_replicates(
-    const TileJob& job, std::size_t channel, std::size_t row, std::size_t i, Scratch& s) {
-    const std::vector<double> residual = s.work.residual;
-    s.drawn.assign(job.layout.measurements, 0.0);
-    const auto texel = (static_cast<std::size_t>(job.rows.first_row) + row) * job.layout.width + i;
-    for (std::size_t r = 0; r < job.result.replicates.size(); ++r) {
-        const NoiseKey key = noise_key(job.options.seed, static_cast<std::uint32_t>(r),
-                                       static_cast<std::uint32_t>(channel), texel);
-        for (std::size_t k = 0; k < s.drawn.size(); ++k)
-            if (s.data.weight[k] > 0.0)
-                s.drawn[k] = s.data.b[k] + residual[k] +
-                             normal_number(key, static_cast<std::uint32_t>(k)) *
-                                 std::sqrt(s.data.noise_share[k] / s.data.weight[k]);
-        s.replicate.is_free = s.fit[channel].is_free;
-        solve_again(s.texel, job.penalty, s.drawn, s.data.weight, s.work, s.replicate);
-        if (job.options.keeps_light)
-            keep_light(s.drawn, s.data.weight, s.work, s.replicate);
-        store(job, channel, row, i, s.replicate.coeffs, job.result.replicates[r]);
-    }
 }
 
 void add_texel(const TexelFit& fit, double kkt_limit, FitReport& report) {
@@ -112,7 +87,6 @@ FitReport solve_row(const TileJob& job, std::size_t row, Scratch& s) {
             job.result.valid_count[at] = static_cast<std::int16_t>(fit.valid_count);
             job.result.free_count[at] = static_cast<std::int16_t>(fit.free_count);
             add_texel(fit, job.options.kkt_limit, report);
-            solve_replicates(job, c, row, i, s);
         }
     }
     return report;
@@ -125,8 +99,6 @@ TileResult empty_result(const TileLayout& layout, const FitOptions& options, Til
     result.coeffs.resize(texels * layout.functions);
     if (options.solve.wants_sigma)
         result.sigma.resize(texels * layout.functions);
-    result.replicates.assign(static_cast<std::size_t>(options.replicates),
-                             std::vector<float>(texels * layout.functions));
     result.chi_square.resize(texels);
     result.kkt_rel.resize(texels);
     result.valid_count.resize(texels);
@@ -179,14 +151,12 @@ void check(const FitOptions& options) {
         refuse("channels", ">= 1", options.channels);
     if (!(options.model_error_rel >= 0.0) || std::isinf(options.model_error_rel))
         refuse("model_error_rel", "finite, >= 0", options.model_error_rel);
-    if (options.replicates < 0)
-        refuse("replicates", ">= 0", options.replicates);
     if (!(options.tile_bytes > 0.0))
         refuse("tile_bytes", "> 0", options.tile_bytes);
 }
 
 int tile_rows(const Design& design, const FitOptions& options) {
-    const double images = (options.solve.wants_sigma ? 2.0 : 1.0) + options.replicates;
+    const double images = options.solve.wants_sigma ? 2.0 : 1.0;
     const double row_bytes = sizeof(float) * static_cast<double>(options.channels) *
                              design.texels.x *
                              (2.0 * design.measurement_count + images * design.basis_count() + 3.0);

@@ -16,8 +16,7 @@ namespace nearfield::fit {
 struct TileResult {
     TileRange rows;
     std::vector<float> coeffs;
-    std::vector<float> sigma;                    // empty where not asked for
-    std::vector<std::vector<float>> replicates;  // [replicate], each like coeffs
+    std::vector<float> sigma;  // empty where not asked for
     std::vector<float> chi_square, kkt_rel;
     std::vector<std::int16_t> valid_count, free_count;
 };
@@ -47,8 +46,6 @@ struct FitOptions {
     bool keeps_light = false;    // of every texel, summed over its measurements (keep_light.h)
     double model_error_rel = 0;  // what rig and basis get wrong, of a texel's brightest measurement
     double kkt_limit = 1e-6;
-    int replicates = 0;         // parametric bootstrap: fits of G c + noise; 16 give sigma to 18 %
-    std::uint64_t seed = 1;     // of the replicates' noise
     double tile_bytes = 256e6;  // of a tile's input and result
 };
 
@@ -63,9 +60,8 @@ int tile_rows(const Design& design, const FitOptions& options);
 
 /// One tile. Throws Error if the input's sizes do not fit, a value is not finite where its variance
 /// is, or a variance is NaN or not positive.
-/// Cost    that of solve_texel for every texel and channel; sigma doubles it, a replicate adds
-/// half.
-///         Parallel over rows (TBB).
+/// Cost    that of solve_texel for every texel and channel; sigma doubles it. Parallel over rows
+/// (TBB).
 TileResult solve_tile(const Design& design,
                       const FitOptions& options,
                       TileRange rows,

@@ -2,6 +2,7 @@
 #include "fit/design.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace nearfield::fit {
 namespace {
@@ -65,21 +66,20 @@ void fill_quadrature(const Design& design, RunPair run, glm::dvec2 s_m, int stri
     }
 }
 
-// The rectangles' rows again, at their places in whole rows of the grid.
-void spread_rows(TexelDesign& texel) {
-    const int columns = texel.grid.x;
-    texel.wide = (columns + kSpreadRow - 1) / kSpreadRow * kSpreadRow;
-    texel.spread.assign(static_cast<std::size_t>(texel.measurement_count * texel.height) *
-                            static_cast<std::size_t>(texel.wide),
-                        0.0);
-    double* to = texel.spread.data();
-    const double* from = texel.value.data();
-    for (int k = 0; k < texel.measurement_count; ++k) {
-        const int column = texel.first[static_cast<std::size_t>(k)] % columns;
-        for (int row = 0; row < texel.height; ++row, to += texel.wide, from += texel.stride)
-            for (int a = 0; a < texel.width; ++a)
-                to[column + a] = from[a];
-    }
+void sort_by_corner(TexelDesign& texel) {
+    const auto corner_of = [&](int k) {
+        const int first = texel.first[static_cast<std::size_t>(k)];
+        return static_cast<std::size_t>(first % texel.grid.x * texel.grid.y + first / texel.grid.x);
+    };
+    texel.corner_begin.assign(static_cast<std::size_t>(texel.grid.x * texel.grid.y) + 1, 0);
+    for (int k = 0; k < texel.measurement_count; ++k)
+        ++texel.corner_begin[corner_of(k) + 1];
+    std::partial_sum(texel.corner_begin.begin(), texel.corner_begin.end(),
+                     texel.corner_begin.begin());
+    texel.by_corner.resize(static_cast<std::size_t>(texel.measurement_count));
+    std::vector<int> next = texel.corner_begin;
+    for (int k = 0; k < texel.measurement_count; ++k)
+        texel.by_corner[static_cast<std::size_t>(next[corner_of(k)]++)] = k;
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ bool Design::is_varying() const {
 }
 
 void fill_texel_design(const Design& design, int i, int j, TexelDesign& texel) {
-    constexpr int kVector = 4;  // doubles of a register: blocks' rows are whole registers
+    constexpr int kVector = 8;  // doubles of two registers, which blocks' rows fill
     texel.grid = design.grid;
     texel.measurement_count = design.measurement_count;
     texel.width = design.x.width;
@@ -112,7 +112,7 @@ void fill_texel_design(const Design& design, int i, int j, TexelDesign& texel) {
                          entry_scale(design, {design.x.u_m[run.x], design.y.u_m[run.y]}, s_m),
                          texel.stride, block);
     }
-    spread_rows(texel);
+    sort_by_corner(texel);
 }
 
 std::vector<double> dense(const TexelDesign& texel) {

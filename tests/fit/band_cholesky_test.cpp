@@ -80,5 +80,52 @@ TEST(BandCholesky, SolvesBandsOfAnyShapeInDirtyMemory) {
     }
 }
 
+// Writes the columns that are not left out from `begin` on.
+void write_columns(const std::vector<double>& a, int begin, BandMatrix& matrix) {
+    const auto n = static_cast<std::size_t>(matrix.size);
+    for (int j = begin; j < matrix.size; ++j)
+        for (int i = j; matrix.is_out[static_cast<std::size_t>(j)] == 0 &&
+                        i < matrix.row_end[static_cast<std::size_t>(j)];
+             ++i)
+            matrix.value[static_cast<std::size_t>(j * matrix.leading + i)] =
+                a[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)];
+}
+
+// Columns are left out and come back at random; the factor is made again from the first that
+// changed. The truth is 0 where left out, and what is asked of left out rows does not matter.
+TEST(BandCholesky, FollowsColumnsThatAreLeftOut) {
+    for (const int size : {1, 7, 30, 41}) {
+        std::vector<int> first;
+        const std::vector<double> a = random_band(size, 5, first);
+        const auto n = static_cast<std::size_t>(size);
+        BandMatrix matrix;
+        matrix.value.assign(std::size_t{60} * 60, kDirt);
+        matrix.first = first;
+        reset(matrix, size);
+        support::Random random{static_cast<std::uint64_t>(size)};
+        for (int change = 0; change < 40; ++change) {
+            int begin = matrix.factored;
+            for (int j = change % 3 == 0 ? 0 : size / 2; j < size; ++j) {
+                const bool is_out = random.uniform() < 0.3;
+                if (is_out != (matrix.is_out[static_cast<std::size_t>(j)] != 0))
+                    begin = std::min(begin, j);
+                matrix.is_out[static_cast<std::size_t>(j)] = is_out ? 1 : 0;
+            }
+            begin = begin / kColumnBlock * kColumnBlock;
+            write_columns(a, begin, matrix);
+            factorize(matrix, begin);
+            std::vector<double> truth(n), x(static_cast<std::size_t>(matrix.vector_size()), 0.0);
+            for (std::size_t i = 0; i < n; ++i)
+                truth[i] = matrix.is_out[i] != 0 ? 0.0 : random.uniform(-1.0, 1.0);
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = 0; j < n && matrix.is_out[i] == 0; ++j)
+                    x[i] += a[i * n + j] * truth[j];
+            solve(matrix, x.data());
+            for (std::size_t i = 0; i < n; ++i)
+                ASSERT_NEAR(x[i], truth[i], 1e-13) << size << ", change " << change;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace nearfield::fit

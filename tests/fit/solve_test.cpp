@@ -170,7 +170,10 @@ TEST(SolveTexel, DoesNotDependOnWhereItStarts) {
         for (int m = 0; m < 99; ++m)
             warm.is_free.push_back(random.uniform() < 0.05 * start ? 1 : 0);
         solve_texel(texel, penalty, data.b, data.weight, {1e-4, 2, false}, work, warm);
-        EXPECT_EQ(warm.coeffs, cold.coeffs) << start;
+        EXPECT_EQ(warm.is_free, cold.is_free) << start;
+        // Coefficients have other places in the factor, so that rounding differs.
+        for (std::size_t m = 0; m < 99; ++m)
+            ASSERT_NEAR(warm.coeffs[m], cold.coeffs[m], 1e-11) << start;
     }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles, threads, sigma, replicates, smoothness: what a whole light field's fit promises.
+// Tiles, threads, sigma, smoothness: what a whole light field's fit promises.
 #include "fit/stream.h"
 
 #include "fit/quality.h"
+#include "fit/replicates.h"
 #include "fit/sigma.h"
 #include "fit/smoothness.h"
 #include "formats/files/error.h"
@@ -88,7 +89,7 @@ ReadTile reader_of(const TileInput& whole, const Design& design) {
 
 // All tiles put together, [channel or image][j][i] as a single tile would be.
 struct Whole {
-    std::vector<float> coeffs, sigma, chi_square, replicate;
+    std::vector<float> coeffs, sigma, chi_square;
     FitReport report;
 };
 
@@ -111,8 +112,6 @@ Whole solve_whole(const Design& design, const FitOptions& options, const TileInp
             place(tile.coeffs, tile.rows, design.texels, whole.coeffs);
             place(tile.sigma, tile.rows, design.texels, whole.sigma);
             place(tile.chi_square, tile.rows, design.texels, whole.chi_square);
-            if (!tile.replicates.empty())
-                place(tile.replicates.back(), tile.rows, design.texels, whole.replicate);
         });
     return whole;
 }
@@ -125,7 +124,6 @@ TEST(SolveLightfield, DoesNotDependOnTilesOrThreads) {
     options.channels = 3;
     options.solve.lambda = 1e-4;
     options.solve.wants_sigma = true;
-    options.replicates = 2;
     const Whole one = solve_whole(design, options, input);
     EXPECT_EQ(one.report.texel_count, 3 * 48);
     EXPECT_EQ(one.report.unconverged_count, 0);
@@ -137,7 +135,6 @@ TEST(SolveLightfield, DoesNotDependOnTilesOrThreads) {
     const Whole rows = solve_whole(design, options, input);
     EXPECT_EQ(one.coeffs, rows.coeffs);
     EXPECT_EQ(one.sigma, rows.sigma);
-    EXPECT_EQ(one.replicate, rows.replicate);
     EXPECT_EQ(one.chi_square, rows.chi_square);
     EXPECT_EQ(one.report.kkt_decades, rows.report.kkt_decades);
     EXPECT_EQ(one.report.chi_square, rows.report.chi_square);
@@ -216,7 +213,6 @@ MonteCarlo monte_carlo(double lambda, int draws) {
     FitOptions options;
     options.solve.lambda = lambda;
     options.solve.wants_sigma = true;
-    options.replicates = 400;
     FitReport report;
     const TileResult center = solve_tile(design, options, {0, 1}, exact, report);
     MonteCarlo result;
@@ -227,14 +223,16 @@ MonteCarlo monte_carlo(double lambda, int draws) {
             sum += static_cast<double>(value);
         return sum;
     };
+    options.solve.wants_sigma = false;
     double sum = 0, square = 0;
-    for (const std::vector<float>& replicate : center.replicates) {
-        sum += sum_of(replicate);
-        square += sum_of(replicate) * sum_of(replicate);
+    for (std::uint32_t r = 0; r < 400; ++r) {
+        TileInput drawn = exact;
+        add_noise(tile_layout(design, 1, {0, 1}), {0, 1}, {1, r}, drawn);
+        const double replicate = sum_of(solve_tile(design, options, {0, 1}, drawn, report).coeffs);
+        sum += replicate;
+        square += replicate * replicate;
     }
     result.bootstrap_sum_sigma = std::sqrt(square / 400.0 - std::pow(sum / 400.0, 2.0));
-    options.replicates = 0;
-    options.solve.wants_sigma = false;
     support::Random random{21};
     result.mean.assign(30, 0.0);
     result.sigma.assign(30, 0.0);
