@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands.h"
+#include "app/fit_light.h"
 #include "app/fit_page.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/progress.h"
-#include "fit/fit_capture.h"
-#include "formats/model/luminaire.h"
+#include "fit/solve_capture.h"
+#include "formats/files/lightfield_rows.h"
 #include "formats/model/profile.h"
 
 #include <CLI/CLI.hpp>
@@ -64,14 +65,13 @@ std::string beside_filter(const fit::CaptureFit& result) {
     return line + "\n";
 }
 
-std::string summary(const fit::CaptureFit& result) {
+std::string summary(const fit::CaptureFit& result, const FitLight& light) {
     const Slab& slab = result.lightfield.slabs.front();
-    const double flux_lm = model::luminance(model::flux(result.lightfield));
     return fmt::format(
         "{} positions, {} x {} texels on {:.3f} x {:.3f} m, resolution {:.2f} mm\n"
         "smoothness {:g}; error of rig and basis {:.2g} %; chi-square {:.2f} by degree of freedom; "
         "KKT residual at most {:.1e}\n"
-        "flux {:.5g} lm +- {:.2g} independent, +- {:.2g} % common; {:.2g} % of the light beside "
+        "flux {:.5g} lm +- {:.2g} {}, +- {:.2g} % common; {:.2g} % of the light beside "
         "the "
         "extent\n"
         "{}"
@@ -79,16 +79,15 @@ std::string summary(const fit::CaptureFit& result) {
         result.positions, slab.texels.x, slab.texels.y, slab.s_max_m.x - slab.s_min_m.x,
         slab.s_max_m.y - slab.s_min_m.y, 1e3 * result.resolution_m, result.lambda,
         100 * result.model_error_rel, result.report.reduced_chi_square(), result.report.kkt_worst,
-        flux_lm, model::flux_sigma_y(result.lightfield), 100 * result.lightfield.scale_sigma_rel,
-        100 * result.outside_share, beside_filter(result), result.merge_s, result.smoothness_s,
-        result.solve_s);
+        light.flux_lm, light.flux_sigma_lm, result.replicates > 0 ? "of noise and rig" : "of noise",
+        100 * result.lightfield.scale_sigma_rel, 100 * result.outside_share, beside_filter(result),
+        result.merge_s, result.smoothness_s, result.solve_s);
 }
 
 // Whether what was measured otherwise is as near as the user wants it.
-bool has_right_flux(const FitCommand& command, const fit::CaptureFit& result) {
+bool has_right_flux(const FitCommand& command, double flux_lm) {
     if (!command.flux_lm)
         return true;
-    const double flux_lm = model::luminance(model::flux(result.lightfield));
     const double off_rel = flux_lm / *command.flux_lm - 1;
     say(fmt::format("flux {:.5g} lm is {:+.2f} % off the {:.5g} lm that were measured otherwise\n",
                     flux_lm, 100 * off_rel, *command.flux_lm));
@@ -99,13 +98,29 @@ bool has_right_flux(const FitCommand& command, const fit::CaptureFit& result) {
     return false;
 }
 
-void write_report(const FitCommand& command, const fit::CaptureFit& result, const RunRecord& run) {
+void write_report(const FitCommand& command,
+                  const fit::CaptureFit& result,
+                  const FitLight& light,
+                  const RunRecord& run) {
     if (command.report.empty())
         return;
-    write_page(
-        fit_page(result, fmt::format("nearfield fit {} --rig {} -o {}\n{}, {}", command.capture,
-                                     command.rig, command.output.path, machine(), cost(run))),
-        command.report);
+    write_page(fit_page(result, light,
+                        fmt::format("nearfield fit {} --rig {} -o {}\n{}, {}", command.capture,
+                                    command.rig, command.output.path, machine(), cost(run))),
+               command.report);
+}
+
+// Tiles to where they wait for their file.
+fit::FitSink sink_of(LightFieldRows& rows) {
+    fit::FitSink sink;
+    sink.put = [&rows](const fit::TileResult& tile) {
+        rows.put(tile.rows.first_row, tile.rows.row_count, tile.coeffs, tile.sigma);
+    };
+    sink.put_replicate = [&rows](int replicate, fit::TileRange tile,
+                                 const std::vector<float>& coeffs) {
+        rows.put_replicate(replicate, tile.first_row, tile.row_count, coeffs);
+    };
+    return sink;
 }
 
 void run_fit(FitCommand& command) {
@@ -124,16 +139,21 @@ void run_fit(FitCommand& command) {
     command.options.progress = [&line](double fraction, const std::string& what) {
         line.update(fraction, what);
     };
+    const fit::RectifiedCapture rectified =
+        fit::rectify_capture({command.capture, capture, rig, maps}, command.options);
+    LightFieldRows rows(rectified.planes, {true, command.options.replicates},
+                        command.options.spool_folder);
     fit::CaptureFit result =
-        fit::fit_capture({command.capture, capture, rig, maps}, command.options);
+        fit::solve_capture(rectified, rectified.optics, command.options, sink_of(rows));
     line.finish();
-    say(summary(result));
+    const FitLight light = light_of(rectified.planes, [&rows](int m) { return rows.image(m); });
+    say(summary(result, light));
     result.lightfield.provenance = provenance_of(command, result);
     const RunRecord run = record_run(start_s);
-    write_report(command, result, run);
-    if (!has_right_flux(command, result))
+    write_report(command, result, light, run);
+    if (!has_right_flux(command, light.flux_lm))
         throw CLI::RuntimeError(3);
-    write_lightfield(result.lightfield, command.output.stored(run), command.output.path);
+    rows.write(result.lightfield, command.output.stored(run), command.output.path);
     say(fmt::format("{}: {}\n", command.output.path, cost(run)));
 }
 

@@ -2,8 +2,6 @@
 #include "app/fit_page.h"
 
 #include "app/calibration_page.h"
-#include "formats/model/luminaire.h"
-#include "formats/model/profile.h"
 
 #include <fmt/format.h>
 
@@ -41,100 +39,105 @@ HeatMap s_map(const Slab& slab,
     return map;
 }
 
-// Luminance weights of a slab's channels.
-std::vector<double> channel_weights(const Slab& slab) {
-    if (slab.channels == 1)
-        return {1.0};
-    return {kLuminanceRgb.begin(), kLuminanceRgb.end()};
-}
-
-// Illuminance of S, the sum over images, and its sigma, [j][i].
-struct OnS {
-    std::vector<double> lx, sigma_lx;
-};
-
-OnS illuminance_on_s(const Slab& slab) {
-    OnS on_s{std::vector<double>(slab.texel_count()), std::vector<double>(slab.texel_count())};
-    const std::vector<double> weights = channel_weights(slab);
-    for (int m = 0; m < slab.image_count(); ++m)
-        for (std::size_t t = 0; t < slab.texel_count(); ++t) {
-            double sigma = 0;
-            for (int c = 0; c < slab.channels; ++c) {
-                const std::size_t at = slab.image_offset(c, m) + t;
-                const double weight = weights[static_cast<std::size_t>(c)];
-                on_s.lx[t] += weight * double(slab.coeffs[at]);
-                if (!slab.sigma.empty() && std::isfinite(slab.sigma[at]))
-                    sigma += weight * double(slab.sigma[at]);
-            }
-            on_s.sigma_lx[t] += sigma * sigma;
-        }
-    // A basis function's integral over U turns coefficients into lux.
-    const double integral = model::integral(slab.profile);
-    const double area_m2 = integral * integral * slab.pitch_m.x * slab.pitch_m.y;
-    for (std::size_t t = 0; t < slab.texel_count(); ++t) {
-        on_s.lx[t] *= area_m2;
-        on_s.sigma_lx[t] = area_m2 * std::sqrt(on_s.sigma_lx[t]);
-    }
-    return on_s;
-}
-
-// The lens as it is seen from a direction, cd/m^2.
-HeatMap seen_from(const Slab& slab, glm::dvec2 tangent) {
-    constexpr int kColumns = 96;
-    const glm::dvec2 half_m = 0.5 * (glm::dvec2(slab.grid) + 1.0) * slab.pitch_m;
+HeatMap view_map(const LensView& view) {
     HeatMap map;
-    map.lower = slab.u_center_m - half_m;
-    map.upper = slab.u_center_m + half_m;
-    map.size = {kColumns, static_cast<int>(kColumns * half_m.y / half_m.x)};
-    map.title = fmt::format("From ({:+.1f}, {:+.1f}) degrees", 57.29578 * std::atan(tangent.x),
-                            57.29578 * std::atan(tangent.y));
+    map.lower = view.lower_m;
+    map.upper = view.upper_m;
+    map.size = view.size_px;
+    map.values = view.cd_per_m2;
+    map.title = fmt::format("From ({:+.1f}, {:+.1f}) degrees", 57.29578 * std::atan(view.tangent.x),
+                            57.29578 * std::atan(view.tangent.y));
     map.x_label = "x on U, m (drawn as seen from before the lamp)";
     map.y_label = "y on U, m";
     map.value_label = "cd/m^2";
     map.palette = report::Palette::Gray;
     map.flip_x = true;
-    const glm::dvec2 step_m = (map.upper - map.lower) / glm::dvec2(map.size);
-    for (int row = 0; row < map.size.y; ++row)
-        for (int column = 0; column < map.size.x; ++column) {
-            const glm::dvec2 u_m = map.lower + (glm::dvec2(column, row) + 0.5) * step_m;
-            const double value =
-                model::luminance(model::radiance(slab, u_m, u_m + slab.delta_m * tangent));
-            map.values.push_back(value);
-            map.high = std::max(map.high, value);
-        }
-    map.high = std::max(map.high, 1e-12);
+    map.high = std::max(1e-12, *std::max_element(map.values.begin(), map.values.end()));
     map.picture_px = {620, 480};
     return map;
 }
 
-Section lamp_section(const Slab& slab, const OnS& on_s) {
+Section lamp_section(const FitLight& light) {
     Section section{"The lamp", {}, {}, {}, {}};
-    const auto brightest = std::max_element(on_s.lx.begin(), on_s.lx.end()) - on_s.lx.begin();
-    const auto column = static_cast<int>(brightest) % slab.texels.x;
-    const auto row = static_cast<int>(brightest) / slab.texels.x;
-    const glm::dvec2 hot_m = slab.s_min_m + (glm::dvec2(column, row) + 0.5) * slab.texel_m();
-    const glm::dvec2 hot = (hot_m - slab.u_center_m) / slab.delta_m;
-    const double spread = 0.35 * (slab.s_max_m.x - slab.s_min_m.x) / slab.delta_m;
-    for (const glm::dvec2 offset : {glm::dvec2(0.0), glm::dvec2(-spread, 0.0),
-                                    glm::dvec2(spread, 0.0), glm::dvec2(0.0, -0.4 * spread)})
-        add_drawing(section,
-                    draw(seen_from(slab, hot + offset), "The lens by its measured light."));
+    for (const LensView& view : light.views)
+        add_drawing(section, draw(view_map(view), "The lens by its measured light."));
     section.columns = 2;
     return section;
 }
 
-Section light_section(const Slab& slab, const OnS& on_s) {
-    Section section{"Light on S, and how well it is known", {}, {}, {}, {}};
-    HeatMap light = s_map(slab, on_s.lx, "Illuminance of S without filter", "lx");
-    light.low = 1e-3 * light.high;
-    light.log_scale = true;
-    add_drawing(section, draw(light, "The sum over all images."));
-    std::vector<double> relative(on_s.lx.size());
+// Sigma over light, where a thousandth of the brightest falls; else none.
+std::vector<double> relative_sigma(const FitLight& light) {
+    const double least_lx = 1e-3 * *std::max_element(light.on_s_lx.begin(), light.on_s_lx.end());
+    std::vector<double> relative(light.on_s_lx.size());
     for (std::size_t t = 0; t < relative.size(); ++t)
-        relative[t] = on_s.lx[t] > light.low ? 100 * on_s.sigma_lx[t] / on_s.lx[t] : NAN;
-    add_drawing(section, draw(s_map(slab, std::move(relative), "Its sigma from noise", "%"),
+        relative[t] = light.on_s_lx[t] > least_lx ? light.on_s_sigma_lx[t] / light.on_s_lx[t] : NAN;
+    return relative;
+}
+
+Section light_section(const Slab& slab, const FitLight& light) {
+    Section section{"Light on S, and how well it is known", {}, {}, {}, {}};
+    HeatMap map = s_map(slab, light.on_s_lx, "Illuminance of S without filter", "lx");
+    map.low = 1e-3 * map.high;
+    map.log_scale = true;
+    add_drawing(section, draw(map, "The sum over all images."));
+    std::vector<double> percent = relative_sigma(light);
+    for (double& value : percent)
+        value *= 100;
+    add_drawing(section, draw(s_map(slab, std::move(percent), "Its sigma from noise", "%"),
                               "Independent errors of the coefficients; what is common to all is in "
                               "the scale. Blank: darker than a thousandth of the brightest."));
+    return section;
+}
+
+double median_of(std::vector<double> values) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (values.empty())
+        return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+report::Plot shares_plot(const fit::PositionShares& shares) {
+    report::Plot plot{"Positions, asked of those that were held out",
+                      "share of the positions in the fit",
+                      "chi-square by held-out measurement",
+                      {}};
+    plot.curves = {{"held out", shares.share, shares.chi_square, report::Marks::Dots}};
+    plot.log_y = true;
+    return plot;
+}
+
+Section more_section(const fit::CaptureFit& fit, const FitLight& light) {
+    Section section{"What more of it would buy", {}, {}, {}, {}};
+    const double noise_rel = median_of(relative_sigma(light));
+    report::Table table{"", {"more", "costs", "buys"}, {}};
+    table.rows.push_back(
+        {"four times the exposures",
+         fmt::format("at most {:.0f} instead of {:.0f} minutes of capture", 4 * fit.capture_s / 60,
+                     fit.capture_s / 60),
+         fmt::format(
+             "half the noise: {:.2g} % instead of {:.2g} % of a texel's light, in the median",
+             50 * noise_rel, 100 * noise_rel)});
+    const std::vector<double>& chi_square = fit.shares.chi_square;
+    if (chi_square.size() > 1)
+        table.rows.push_back(
+            {"positions", fmt::format("{:.1f} s each", fit.capture_s / std::max(1, fit.positions)),
+             fmt::format(
+                 "{:.0f} % of the positions foretell the others with {:.2g} times the error "
+                 "that {:.0f} % of them make: as much again is to be had only while this "
+                 "falls",
+                 100 * fit.shares.share.back(), std::sqrt(chi_square.back() / chi_square.front()),
+                 100 * fit.shares.share.front())});
+    table.rows.push_back(
+        {"a better rig, a finer basis", "",
+         fmt::format("less of the {:.2g} % that rig and basis get wrong of a "
+                     "texel's brightest position, as positions foretell each other",
+                     100 * fit.model_error_rel)});
+    section.tables = {std::move(table)};
+    if (chi_square.size() > 1)
+        add_drawing(section, draw(shares_plot(fit.shares),
+                                  "Smoothness and error of rig and basis as chosen with all."));
     return section;
 }
 
@@ -175,16 +178,15 @@ Section residual_section(const fit::CaptureFit& fit) {
     return section;
 }
 
-Section facts_section(const fit::CaptureFit& fit) {
+Section facts_section(const fit::CaptureFit& fit, const FitLight& light) {
     const Slab& slab = fit.lightfield.slabs.front();
     report::Table table{"", {"what", "value"}, {}};
     const auto row = [&table](const std::string& what, const std::string& value) {
         table.rows.push_back({what, value});
     };
-    row("flux",
-        fmt::format("{:.5g} lm +- {:.2g} (noise) +- {:.2g} % (scale)",
-                    model::luminance(model::flux(fit.lightfield)),
-                    model::flux_sigma_y(fit.lightfield), 100 * fit.lightfield.scale_sigma_rel));
+    row("flux", fmt::format("{:.5g} lm +- {:.2g} ({}) +- {:.2g} % (scale)", light.flux_lm,
+                            light.flux_sigma_lm, fit.replicates > 0 ? "noise and rig" : "noise",
+                            100 * fit.lightfield.scale_sigma_rel));
     row("images", fmt::format("{} x {} of {} x {} texels, {}", slab.grid.x, slab.grid.y,
                               slab.texels.x, slab.texels.y, slab.profile.name));
     row("resolution on S", fmt::format("{:.2f} mm (a texel is {:.2f} cells of the sensor)",
@@ -192,7 +194,7 @@ Section facts_section(const fit::CaptureFit& fit) {
     row("blur of directions",
         fmt::format("{:.2f} degrees: a basis function's pitch over the planes' distance",
                     57.29578 * slab.pitch_m.x / slab.delta_m));
-    row("error of rig and basis, in every sigma",
+    row("error of rig and basis, in every weight",
         fmt::format("{:.2g} % of a texel's brightest position", 100 * fit.model_error_rel));
     row("positions", fmt::format("{}, {} missing", fit.positions, fit.missing_positions));
     row("saturated in all exposures", fmt::format("{:.3g} % of pixels", 100 * fit.saturated_share));
@@ -211,14 +213,15 @@ Section facts_section(const fit::CaptureFit& fit) {
 
 }  // namespace
 
-report::Page fit_page(const fit::CaptureFit& fit, const std::string& command) {
-    const Slab& slab = fit.lightfield.slabs.front();
-    const OnS on_s = illuminance_on_s(slab);
+report::Page fit_page(const fit::CaptureFit& fit,
+                      const FitLight& light,
+                      const std::string& command) {
     report::Page page{"Fit", "A lamp's light field from measured frames.", {}};
-    page.sections = {facts_section(fit),
-                     lamp_section(slab, on_s),
-                     light_section(slab, on_s),
+    page.sections = {facts_section(fit, light),
+                     lamp_section(light),
+                     light_section(fit.lightfield.slabs.front(), light),
                      residual_section(fit),
+                     more_section(fit, light),
                      {"How it was made", {}, {}, {}, command}};
     return page;
 }

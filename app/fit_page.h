@@ -2,6 +2,7 @@
 /// The report of a fit.
 #pragma once
 
+#include "app/fit_light.h"
 #include "fit/fit_capture.h"
 #include "formats/report/page.h"
 
@@ -9,6 +10,9 @@
 
 namespace nearfield::app {
 
-report::Page fit_page(const fit::CaptureFit& fit, const std::string& command);
+/// `fit` has planes; coefficients are not asked for.
+report::Page fit_page(const fit::CaptureFit& fit,
+                      const FitLight& light,
+                      const std::string& command);
 
 }  // namespace nearfield::app

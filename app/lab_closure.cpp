@@ -182,6 +182,7 @@ Closure closure_of(const LabTruth& truth,
     fit::CaptureFitOptions same = options;
     same.lambda = fit.lambda;
     same.model_error_rel = fit.model_error_rel;
+    same.replicates = 0;
     same.progress = {};
     const auto add = [&](const std::string& what, const LightField& lightfield) {
         closure.budget.push_back(

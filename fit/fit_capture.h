@@ -42,6 +42,13 @@ struct BesideFilter {
     double chi_square = 0;  // of its texels against the parabola that is taken off
 };
 
+/// How well a share of the positions foretells the others, with the chosen smoothness: what fewer
+/// or more positions are worth.
+struct PositionShares {
+    std::vector<double> share;       // used in the fits, rising
+    std::vector<double> chi_square;  // by held-out measurement
+};
+
 /// What was seen on the way; for the report.
 struct CaptureFit {
     LightField lightfield;
@@ -49,7 +56,10 @@ struct CaptureFit {
     SmoothnessCurve smoothness;  // empty where lambda was given
     double lambda = 0;
     double model_error_rel = 0;  // given or found
+    PositionShares shares;
     int positions = 0, missing_positions = 0;
+    int replicates = 0;
+    double capture_s = 0;            // from the first frame to the last
     double drift_rel = 0;            // largest, of the lamp; corrected
     double saturated_share = 0;      // of pixels, in all exposures
     double exposure_chi_square = 0;  // of exposures against each other, by degree of freedom

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace nearfield::fit {
 namespace {
@@ -70,6 +72,16 @@ void put_positions(const Measurement& measurement,
     fit.exposure_chi_square = chi_square;
 }
 
+// By the camera's clock.
+double duration_s(const capture::Capture& capture) {
+    std::uint64_t first_ns = std::numeric_limits<std::uint64_t>::max(), last_ns = 0;
+    for (const auto& [number, frame] : capture.frames) {
+        first_ns = std::min(first_ns, frame.camera_time_ns);
+        last_ns = std::max(last_ns, frame.camera_time_ns);
+    }
+    return last_ns > first_ns ? 1e-9 * static_cast<double>(last_ns - first_ns) : 0.0;
+}
+
 void check_positions(const Measurement& measurement, const std::vector<PositionFrames>& positions) {
     constexpr std::size_t kLeast = 4;
     if (positions.size() < kLeast)
@@ -105,6 +117,8 @@ RectifiedCapture rectify_capture(const Measurement& measurement, const CaptureFi
     CaptureFit seen;
     seen.positions = static_cast<int>(positions.size());
     seen.missing_positions = rig.planes->grid.x * rig.planes->grid.y - seen.positions;
+
+    seen.capture_s = duration_s(measurement.capture);
 
     const double start_s = now_s();
     const LampDrift drift(measurement);

@@ -7,8 +7,9 @@
 
 namespace nearfield::model {
 
-/// Standard deviation of the far-field intensity's Y (luminaire.h) from the coefficients' sigma and
-/// the common scale's. The direction is in the luminaire's frame and need not be of unit length.
+/// Standard deviation of the far-field intensity's Y (luminaire.h) from the spread of replicates,
+/// else from the coefficients' sigma as if independent, and the common scale's. The direction is in
+/// the luminaire's frame and need not be of unit length.
 double intensity_sigma_y(const LightField& lightfield, glm::dvec3 direction);
 
 }  // namespace nearfield::model

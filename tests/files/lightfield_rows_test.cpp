@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace nearfield::test {
@@ -34,8 +35,16 @@ TEST(LightFieldRows, MakeTheSameFileAsAWholeLightField) {
             LightField whole = sample_lightfield();
             // More images than are written side by side.
             whole.slabs = {sample_slab({{6, 5}, {5, 4}, channels, has_sigma})};
-            const Slab& slab = whole.slabs.front();
-            LightFieldRows rows(slab, has_sigma, ".");
+            Slab& slab = whole.slabs.front();
+            for (const float factor : {0.5F, 2.0F}) {
+                slab.replicates.push_back(slab.coeffs);
+                for (float& coefficient : slab.replicates.back())
+                    coefficient *= factor;
+            }
+            LightFieldRows rows(slab, {has_sigma, 2}, ".");
+            for (int r = 0; r < 2; ++r)
+                rows.put_replicate(
+                    r, 0, 4, rows_of(slab, slab.replicates[static_cast<std::size_t>(r)], 0, 4));
             put_rows(slab, 3, 1, rows);
             put_rows(slab, 0, 2, rows);
             put_rows(slab, 2, 1, rows);
@@ -43,17 +52,36 @@ TEST(LightFieldRows, MakeTheSameFileAsAWholeLightField) {
             rows.write(whole, {}, "rows.lightfield.exr");
             EXPECT_EQ(read_bytes("rows.lightfield.exr"), read_bytes("whole.lightfield.exr"))
                 << channels << " channels";
-            const std::vector<float> image = rows.image(channels - 1, 7);
-            for (std::size_t t = 0; t < image.size(); ++t)
-                EXPECT_EQ(image[t], slab.coeffs[slab.image_offset(channels - 1, 7) + t]);
+            const Slab image = rows.image(7);
+            EXPECT_EQ(image.image_count(), 1);
+            EXPECT_EQ(image.basis_center_m(0, 0), slab.basis_center_m(1, 1));
+            for (std::size_t t = 0; t < slab.texel_count(); ++t) {
+                const std::size_t from = slab.image_offset(channels - 1, 7) + t;
+                const std::size_t to = image.image_offset(channels - 1, 0) + t;
+                EXPECT_EQ(image.coeffs[to], slab.coeffs[from]);
+                EXPECT_EQ(image.replicates[1][to], slab.replicates[1][from]);
+                if (has_sigma) {
+                    EXPECT_EQ(image.sigma[to], slab.sigma[from]);
+                }
+            }
         }
+}
+
+TEST(LightFieldRows, TakeWhatWasNotSeenForAsBrightAsAny) {
+    Slab slab = sample_slab({{2, 2}, {5, 4}, 1, true});
+    LightFieldRows rows(slab, {true, 0}, ".");
+    const float brightest = *std::max_element(slab.coeffs.begin(), slab.coeffs.end());
+    slab.sigma[slab.image_offset(0, 3) + 6] = std::numeric_limits<float>::infinity();
+    put_rows(slab, 0, 4, rows);
+    EXPECT_EQ(rows.image(3).sigma[6], brightest);
+    EXPECT_EQ(rows.image(3).sigma[7], slab.sigma[slab.image_offset(0, 3) + 7]);
 }
 
 TEST(LightFieldRows, AreDarkWhereNoneWerePut) {
     const Slab slab = sample_slab({{2, 2}, {5, 4}, 1, true});
-    LightFieldRows rows(slab, true, ".");
+    LightFieldRows rows(slab, {true, 0}, ".");
     put_rows(slab, 1, 1, rows);
-    const std::vector<float> image = rows.image(0, 3);
+    const std::vector<float> image = rows.image(3).coeffs;
     EXPECT_EQ(image[0], 0.0F);
     EXPECT_EQ(image[5], slab.coeffs[slab.image_offset(0, 3) + 5]);
     EXPECT_EQ(image[19], 0.0F);
@@ -61,7 +89,7 @@ TEST(LightFieldRows, AreDarkWhereNoneWerePut) {
 
 TEST(LightFieldRows, RefuseWhatTheFileMustNotHold) {
     Slab slab = sample_slab({{2, 2}, {5, 4}, 1, false});
-    LightFieldRows rows(slab, false, ".");
+    LightFieldRows rows(slab, {}, ".");
     const auto refused = [&](int first, int count, std::vector<float> values) {
         return message_of([&] { rows.put(first, count, values, {}); });
     };
@@ -74,9 +102,10 @@ TEST(LightFieldRows, RefuseWhatTheFileMustNotHold) {
         values[13] = bad;
         EXPECT_NE(refused(0, 1, values).find("value 13"), std::string::npos);
     }
-    EXPECT_NE(message_of([&] { const LightFieldRows none(slab, false, "no/such/folder"); }), "");
+    EXPECT_NE(message_of([&] { rows.put_replicate(0, 0, 1, std::vector<float>(20)); }), "");
+    EXPECT_NE(message_of([&] { const LightFieldRows none(slab, {}, "no/such/folder"); }), "");
     slab.delta_m = -1;
-    EXPECT_NE(message_of([&] { const LightFieldRows none(slab, false, "."); }), "");
+    EXPECT_NE(message_of([&] { const LightFieldRows none(slab, {}, "."); }), "");
 }
 
 }  // namespace

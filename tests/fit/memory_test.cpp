@@ -47,7 +47,7 @@ TEST(Memory, IsThatOfATileAndAnImage) {
     options.solve.wants_sigma = true;
     options.tile_bytes = kTileBytes;
     const double before = peak_bytes();
-    LightFieldRows rows(planes, true, ".");
+    LightFieldRows rows(planes, {true, 0}, ".");
     const FitReport report = solve_lightfield(
         design, options, [&](TileRange range) { return tile_of(design, range); },
         [&](const TileResult& tile) {
@@ -64,7 +64,7 @@ TEST(Memory, IsThatOfATileAndAnImage) {
     EXPECT_LT(peak_bytes() - before, 3 * kTileBytes + 3 * image_bytes);
     EXPECT_LT(peak_bytes() - before, 0.8 * all_bytes);
 
-    const std::vector<float> image = rows.image(0, 3);
+    const std::vector<float> image = rows.image(3).coeffs;
     const double area_m2 = planes.pitch_m.x * planes.pitch_m.y;
     for (std::size_t t = 0; t < image.size(); t += 99991)
         EXPECT_NEAR(static_cast<double>(image[t]) * area_m2, static_cast<double>(light_at(3, t)),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sigma of what is computed from a lamp with replicates: with all that its texels share.
+#include "formats/model/intensity_sigma.h"
 #include "formats/model/luminaire.h"
+#include "formats/model/profile.h"
 #include "tests/support/lamps.h"
 
 #include <gtest/gtest.h>
@@ -33,6 +35,8 @@ TEST(Replicates, KnowWhatTexelsShare) {
     ASSERT_GT(lux, 0.0);
     EXPECT_NEAR(irradiance_sigma_y(lamp, kReceiver) / lux, 0.01, 1e-6);
     EXPECT_NEAR(flux_sigma_y(lamp) / luminance(flux(lamp)), 0.01, 1e-6);
+    const glm::dvec3 ahead{0.01, -0.02, 1.0};
+    EXPECT_NEAR(intensity_sigma_y(lamp, ahead) / luminance(intensity(lamp, ahead)), 0.01, 1e-6);
     lamp.scale_sigma_rel = 0.02;
     EXPECT_NEAR(irradiance_sigma_y(lamp, kReceiver) / lux, std::hypot(0.01, 0.02), 1e-6);
     EXPECT_NEAR(flux_sigma_y(lamp) / luminance(flux(lamp)), 0.01, 1e-6);
