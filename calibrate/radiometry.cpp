@@ -45,6 +45,7 @@ DarkResult assumed_dark(const PixelLayout& layout, double black_dn) {
     DarkResult dark;
     dark.black_dn.assign(layout.value_count(), static_cast<float>(black_dn));
     dark.dark_dn_per_s.assign(layout.value_count(), 0.0F);
+    dark.room_dn_per_s.assign(layout.value_count(), 0.0F);
     dark.is_hot.assign(layout.value_count(), 0.0F);
     return dark;
 }
@@ -68,6 +69,7 @@ void find_dark(const SortedFrames& frames,
     result.maps.size_px = result.layout.size_px;
     result.maps.black_dn = result.dark.black_dn;
     result.maps.dark_dn_per_s = result.dark.dark_dn_per_s;
+    result.maps.room_dn_per_s = result.dark.room_dn_per_s;
     result.maps.is_bad = result.dark.is_hot;
     result.radiometry.dark_temperature_c = result.dark.temperature_c;
 }

@@ -28,7 +28,7 @@ void flag_dark(const SortedFrames& frames, RadiometryResult& result) {
         flag(result, fmt::format("{:.1f} % of dark values are 0", 100.0 * dark.share_clipped),
              "raise the camera's black level: noise that is cut off makes dark light too bright");
     constexpr double kMostSpread_c = 2.0;
-    if (dark.temperature_spread_c > kMostSpread_c)
+    if (dark.temperature_spread_c > kMostSpread_c && !dark.is_room_known)
         flag(result,
              fmt::format("the sensor's temperature changed by {:.1f} C during the darks",
                          dark.temperature_spread_c),
@@ -42,10 +42,11 @@ void flag_dark(const SortedFrames& frames, RadiometryResult& result) {
         }
     }
     constexpr double kMostOff_c = 5.0;
-    if (most_off_c > kMostOff_c)
+    if (most_off_c > kMostOff_c + (dark.is_room_known ? dark.temperature_spread_c : 0.0))
         flag(result,
              fmt::format("lights were taken up to {:.1f} C off the darks' temperature", most_off_c),
-             "take darks beside the lights, or let the camera warm up");
+             "take darks after the lights too (darks_after_per_exposure), or let the camera warm "
+             "up");
 }
 
 }  // namespace

@@ -124,17 +124,19 @@ double floor_lx(const std::vector<ScalePoint>& points) {
 }  // namespace
 
 std::vector<float> light_of(const capture::Frame& frame,
-                            double asked_us,
+                            const capture::FrameRecord& record,
                             const PixelLayout& layout,
                             const rig::Radiometry& radiometry,
                             const rig::Maps& maps) {
-    const auto asked_s = static_cast<float>(asked_us * kScaleSecondsPerMicrosecond);
-    const auto true_s = static_cast<float>(true_seconds(radiometry, asked_us));
+    const double asked_s = record.shot.exposure_us * kScaleSecondsPerMicrosecond;
+    const auto true_s = static_cast<float>(true_seconds(radiometry, record.shot.exposure_us));
+    const double growth = rig::dark_growth(radiometry, record.temperature_c);
     std::vector<float> light(frame.values.size());
     float before = 0.0F;
     for (std::size_t k = 0; k < light.size(); ++k) {
-        const float net_dn = static_cast<float>(rig::linear_dn(radiometry, frame.values[k])) -
-                             maps.black_dn[k] - maps.dark_dn_per_s[k] * asked_s;
+        const auto net_dn = static_cast<float>(rig::linear_dn(radiometry, frame.values[k]) -
+                                               double(maps.black_dn[k]) -
+                                               rig::dark_rate_dn_per_s(maps, k, growth) * asked_s);
         // A bad pixel's light spreads as its neighbor's does.
         light[k] = maps.is_bad[k] != 0.0F ? before : net_dn / true_s;
         before = light[k];
@@ -174,7 +176,7 @@ std::vector<ScalePoint> scale_points_of(std::span<const Bracket> brackets,
             const double asked_us = record->shot.exposure_us;
             const double exposure_s = true_seconds(radiometry, asked_us);
             const std::vector<float> light =
-                light_of(read(*record), asked_us, layout, radiometry, maps);
+                light_of(read(*record), *record, layout, radiometry, maps);
             if (share_unusable(light) > kMostUnusable)
                 continue;
             std::optional<ScalePoint> point =

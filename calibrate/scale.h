@@ -58,7 +58,7 @@ std::optional<ScaleResult> fit_scale(std::vector<ScalePoint> points, double read
 
 /// A light frame as light in DN/s: what fit sees too. NaN: saturated or a bad pixel.
 std::vector<float> light_of(const capture::Frame& frame,
-                            double asked_us,
+                            const capture::FrameRecord& record,
                             const PixelLayout& layout,
                             const rig::Radiometry& radiometry,
                             const rig::Maps& maps);

@@ -117,8 +117,7 @@ StrayResult stray_of(std::span<const Bracket> brackets,
     const double overlap = model::overlap(*filter) * model::overlap(*filter);
     for (const Bracket& bracket : brackets) {
         const auto light = [&](const capture::FrameRecord& record) {
-            return block_means(
-                light_of(read(record), record.shot.exposure_us, layout, radiometry, maps), layout);
+            return block_means(light_of(read(record), record, layout, radiometry, maps), layout);
         };
         blocks.push_back(light(*bracket.back()));
         const double mean = mean_of_all(light(*bracket.front()));

@@ -195,7 +195,7 @@ RowTotals merge_row(std::span<const ExposedFrame> frames,
         }
         for (std::size_t f = 0; f < frames.size(); ++f)
             exposures[f] = {static_cast<double>(frames[f].values_dn[p]), frames[f].exposure_s};
-        const PixelTraits pixel{maps.black_dn[p], dark_factor * maps.dark_dn_per_s[p],
+        const PixelTraits pixel{maps.black_dn[p], rig::dark_rate_dn_per_s(maps, p, dark_factor),
                                 maps.response[p], maps.response_sigma_rel[p]};
         const MergedPixel merged = merge_pixel(exposures, pixel, noise);
         image.light_dn_per_s[p] = static_cast<float>(merged.light_dn_per_s);
@@ -214,8 +214,8 @@ void check_sizes(std::span<const ExposedFrame> frames, const rig::Maps& maps) {
         static_cast<std::size_t>(maps.size_px.x) * static_cast<std::size_t>(maps.size_px.y);
     if (frames.empty())
         throw Error{"nothing to merge", "frames", "at least one", "none"};
-    for (const auto* map : {&maps.black_dn, &maps.dark_dn_per_s, &maps.response,
-                            &maps.response_sigma_rel, &maps.is_bad})
+    for (const auto* map : {&maps.black_dn, &maps.dark_dn_per_s, &maps.room_dn_per_s,
+                            &maps.response, &maps.response_sigma_rel, &maps.is_bad})
         if (map->size() != pixels)
             throw Error{"maps do not fit", "maps", fmt::format("{} pixels", pixels),
                         fmt::format("{}", map->size())};

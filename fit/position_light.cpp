@@ -15,8 +15,7 @@ namespace {
 using capture::FrameRecord;
 using capture::ShotKind;
 
-constexpr double kDarkDoubling_c = 7;  // silicon's dark current doubles every 6 ... 8 degrees
-constexpr double kDriftRange = 0.8;    // of saturation: pixels brighter than that are no measure
+constexpr double kDriftRange = 0.8;  // of saturation: pixels brighter than that are no measure
 
 double true_exposure_s(const rig::Radiometry& radiometry, const FrameRecord& frame) {
     constexpr double kSame = 1e-6;
@@ -40,9 +39,7 @@ double dark_factor(const rig::Radiometry& radiometry, const PositionFrames& posi
             sum_c += *frame->temperature_c;
             ++count;
         }
-    return count == 0
-               ? 1.0
-               : std::exp2((sum_c / count - radiometry.dark_temperature_c) / kDarkDoubling_c);
+    return count == 0 ? 1.0 : rig::dark_growth(sum_c / count - radiometry.dark_temperature_c);
 }
 
 void check_map(const std::vector<float>& map, const char* name, glm::ivec2 size_px) {
@@ -79,10 +76,11 @@ class ReferenceMean {
         const capture::Frame frame = read_frame(measurement_.folder, record);
         const double exposure_s = true_exposure_s(*measurement_.rig.radiometry, record);
         const rig::Maps& maps = measurement_.maps;
+        const double growth = rig::dark_growth(*measurement_.rig.radiometry, record.temperature_c);
         double sum = 0;
         for (const std::size_t k : pixels_)
             sum += frame.values[k] - double(maps.black_dn[k]) -
-                   exposure_s * double(maps.dark_dn_per_s[k]);
+                   exposure_s * rig::dark_rate_dn_per_s(maps, k, growth);
         return sum / exposure_s;
     }
 
@@ -228,6 +226,7 @@ void check_rig(const Measurement& measurement) {
     const rig::Maps& maps = measurement.maps;
     check_map(maps.black_dn, "black_dn", rig.lens->size_px);
     check_map(maps.dark_dn_per_s, "dark_dn_per_s", rig.lens->size_px);
+    check_map(maps.room_dn_per_s, "room_dn_per_s", rig.lens->size_px);
     check_map(maps.response, "response", rig.lens->size_px);
     check_map(maps.is_bad, "is_bad", rig.lens->size_px);
 }

@@ -93,6 +93,16 @@ std::vector<Shot> darks_of(const Plan& plan, const std::vector<Shot>& others) {
     return shots;
 }
 
+// The sensor is warmer then than it was before the lights.
+std::vector<Shot> darks_after(const Plan& plan) {
+    std::vector<Shot> shots;
+    for (const double exposure_us : plan.bracket.exposures_us)
+        for (int repeat = 0; repeat < plan.darks_after; ++repeat)
+            shots.push_back(
+                {0, ShotKind::Dark, glm::ivec2(-1), -1, exposure_us, plan.darks + repeat});
+    return shots;
+}
+
 }  // namespace
 
 std::string word_of(ShotKind kind) {
@@ -123,6 +133,7 @@ std::vector<Shot> shots_of(const Plan& plan) {
     append(darks_of(plan, shots));
     append(blocked_of(plan));
     append(lights_of(plan));
+    append(darks_after(plan));
     for (std::size_t k = 0; k < shots.size(); ++k)
         shots[k].number = static_cast<int>(k);
     return shots;

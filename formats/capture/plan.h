@@ -81,9 +81,10 @@ struct Plan {
     FilterViewPlan filter_views;
     BracketPlan bracket;
     int repeats = 1;
-    int blocked = 0;  // at each of the bracket's exposures, a plate instead of the filter
-    int darks = 4;    // for every exposure, lamp off
-    int flats = 0;    // of an even source before the lens, at each of their exposures
+    int blocked = 0;      // at each of the bracket's exposures, a plate instead of the filter
+    int darks = 4;        // for every exposure, lamp off
+    int darks_after = 0;  // after the lights, at each of the bracket's exposures
+    int flats = 0;        // of an even source before the lens, at each of their exposures
     std::vector<double> flat_exposures_us;  // ascending; empty: the bracket's middle one
     std::optional<BoardPlan> board;         // none: its views tell nothing
     std::vector<TargetPlane> views;         // of the board

@@ -134,10 +134,11 @@ void check_frame_count(const Plan& plan, const std::string& where) {
     constexpr double kMostShots = 1e6;
     const auto count = [](std::size_t size) { return static_cast<double>(size); };
     const double series = count(plan.flat_exposures_us.size());
-    const double shots =
-        count(plan.bracket.exposures_us.size()) *
-            (static_cast<double>(plan.grid.x) * plan.grid.y * plan.repeats + plan.blocked) +
-        (count(plan.bracket.exposures_us.size()) + series + 2) * plan.darks + series * plan.flats;
+    const double shots = count(plan.bracket.exposures_us.size()) *
+                             (static_cast<double>(plan.grid.x) * plan.grid.y * plan.repeats +
+                              plan.blocked + plan.darks_after) +
+                         (count(plan.bracket.exposures_us.size()) + series + 2) * plan.darks +
+                         series * plan.flats;
     if (shots > kMostShots)
         throw Error{"plan too large", where, fmt::format("at most {:g} frames", kMostShots),
                     fmt::format("{:g}", shots)};
@@ -166,8 +167,8 @@ Plan plan_from(const JsonField& document) {
                     fmt::format("version 1 ... {}", kPlanVersion), fmt::format("{}", version)};
     document.only({"nearfield_plan", "camera", "stage", "instruments", "filter", "filter_views",
                    "exposures_us", "bracket", "repeats", "darks_per_exposure",
-                   "blocked_per_exposure", "flats", "targets", "screen", "photometer", "drift",
-                   "exposure_ratio_limit_rel", "settle_s"});
+                   "darks_after_per_exposure", "blocked_per_exposure", "flats", "targets", "screen",
+                   "photometer", "drift", "exposure_ratio_limit_rel", "settle_s"});
     Plan plan;
     if (document.has("camera"))
         plan.camera = camera_from(document.at("camera"));
@@ -179,6 +180,8 @@ Plan plan_from(const JsonField& document) {
     plan.bracket = bracket_from(document);
     plan.repeats = optional_integer(document, "repeats", plan.repeats, 1, kMostFrames);
     plan.darks = optional_integer(document, "darks_per_exposure", plan.darks, 0, kMostFrames);
+    plan.darks_after =
+        optional_integer(document, "darks_after_per_exposure", plan.darks_after, 0, kMostFrames);
     plan.blocked = optional_integer(document, "blocked_per_exposure", 0, 0, kMostFrames);
     if (document.has("flats"))
         read_flats(document.at("flats"), plan);

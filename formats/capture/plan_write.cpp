@@ -97,6 +97,7 @@ Json json_of(const Plan& plan) {
                            {"darkest_share", plan.bracket.darkest_share}};
     document["repeats"] = plan.repeats;
     document["darks_per_exposure"] = plan.darks;
+    document["darks_after_per_exposure"] = plan.darks_after;
     document["blocked_per_exposure"] = plan.blocked;
     document["flats"] = flats_json(plan);
     document["targets"] = targets_json(plan);

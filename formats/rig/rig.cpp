@@ -25,12 +25,13 @@ constexpr int kMostPositions = 512;      // along an axis of the stage
 constexpr double kRotationError = 1e-9;  // of a matrix that a program wrote
 
 using MapOf = std::vector<float> Maps::*;
-constexpr std::array<std::pair<const char*, MapOf>, 5> kMaps = {
+constexpr std::array<std::pair<const char*, MapOf>, 6> kMaps = {
     {{"black_dn", &Maps::black_dn},
      {"dark_dn_per_s", &Maps::dark_dn_per_s},
      {"response", &Maps::response},
      {"response_sigma_rel", &Maps::response_sigma_rel},
-     {"is_bad", &Maps::is_bad}}};
+     {"is_bad", &Maps::is_bad},
+     {"room_dn_per_s", &Maps::room_dn_per_s}}};
 
 // "rig.json" has its maps in "rig.maps.exr" beside it.
 std::string maps_path(const std::string& rig_path) {
@@ -144,6 +145,15 @@ Picture picture_of(const Maps& maps, const Provenance& provenance) {
 }
 
 }  // namespace
+
+double dark_growth(double warmer_c) {
+    constexpr double kDoubling_c = 7;
+    return std::exp2(warmer_c / kDoubling_c);
+}
+
+double dark_growth(const Radiometry& radiometry, std::optional<double> temperature_c) {
+    return temperature_c ? dark_growth(*temperature_c - radiometry.dark_temperature_c) : 1.0;
+}
 
 void check(const Rig& rig, const std::string& where) {
     const RigCheck check(where);

@@ -60,7 +60,8 @@ struct Curve {
 
 /// How values follow light.
 ///
-///     rate  = (linear(DN) - black_dn[p] - dark_dn_per_s[p] t_asked) / t_true             in DN/s
+///     dark  = room_dn_per_s[p] + (dark_dn_per_s[p] - room_dn_per_s[p]) dark_growth(T - T_dark)
+///     rate  = (linear(DN) - black_dn[p] - dark t_asked) / t_true                         in DN/s
 ///     light = remove_veil(rate) / response[p]                                (rig/veil.h) in DN/s
 ///     E on S = scale_lx_s_per_dn * light / screen(angle of view)                          in lx
 struct Radiometry {
@@ -70,7 +71,7 @@ struct Radiometry {
     double gain_e_per_dn = 0, gain_sigma = 0;
     double read_noise_dn = 0;       // of one frame, quantization included
     double prnu_sigma_rel = 0;      // what is left of it after flat-field correction
-    double dark_temperature_c = 0;  // at which the dark maps were taken
+    double dark_temperature_c = 0;  // T_dark, at which dark_dn_per_s was taken
     double linearity_rel = 0;       // largest deviation from a straight line that was seen
     Curve linear;                   // DN to linear DN; empty: the camera is linear
     std::vector<TrueExposure> exposures;
@@ -93,8 +94,22 @@ struct Maps {
     std::vector<float> black_dn, dark_dn_per_s;
     std::vector<float> response;  // of the pixel with the lens before it; mean 1 by color, no veil
     std::vector<float> response_sigma_rel;
-    std::vector<float> is_bad;  // 1: hot or dead, not to be used
+    std::vector<float> is_bad;         // 1: hot or dead, not to be used
+    std::vector<float> room_dn_per_s;  // of dark_dn_per_s, what does not grow with temperature
 };
+
+/// What dark current is multiplied by when the sensor gets warmer: silicon's doubles every 6 to 8
+/// C.
+double dark_growth(double warmer_c);
+
+/// The same at a frame's temperature; 1 where that is not known.
+double dark_growth(const Radiometry& radiometry, std::optional<double> temperature_c);
+
+/// What pixel `p` gives without the lamp's light.
+inline double dark_rate_dn_per_s(const Maps& maps, std::size_t p, double growth) {
+    const double room = maps.room_dn_per_s[p];
+    return room + growth * (double(maps.dark_dn_per_s[p]) - room);
+}
 
 /// What a capture could tell: photographs of a board give a lens alone, a bracket a response.
 struct Rig {

@@ -44,9 +44,11 @@ Known known_of(const LabFrames& lab) {
     known.radiometry.gain_e_per_dn = truth.bench.camera.gain_e_per_dn;
     known.radiometry.read_noise_dn = std::sqrt(5.5 * 5.5 / (2.7 * 2.7) + 1.0 / 12.0);
     known.radiometry.saturation_dn = 3800;
+    known.radiometry.dark_temperature_c = known.dark.temperature_c;
     known.maps.size_px = truth.bench.camera.size_px;
     known.maps.black_dn = known.dark.black_dn;
     known.maps.dark_dn_per_s = known.dark.dark_dn_per_s;
+    known.maps.room_dn_per_s = known.dark.room_dn_per_s;
     known.maps.is_bad = known.dark.is_hot;
     double mean = 0;
     for (std::size_t k = 0; k < truth.flat.size(); ++k)

@@ -112,6 +112,67 @@ TEST(Dark, OneExposureGivesNoRateAndNoDarksAreRefused) {
     EXPECT_THROW(calibrate::dark_of({}, lab.layout(), lab.reader(), kHotSigmas), Error);
 }
 
+// Noise-free frames of 4 x 2 pixels with their own black levels, dark currents and light of the
+// room, at temperatures before and after: each is found, and growth is the formula's.
+struct WarmDarks {
+    std::vector<capture::FrameRecord> records;
+    std::vector<calibrate::ExposureGroup> groups;
+
+    explicit WarmDarks(double warmer_c) {
+        for (const double exposure_us : {1e5, 4e5, 2e6})
+            for (const double temperature_c : {20.0, 20.0 + warmer_c}) {
+                capture::FrameRecord record;
+                record.shot.exposure_us = exposure_us;
+                record.temperature_c = temperature_c;
+                record.size_px = {4, 2};
+                records.push_back(record);
+            }
+        for (std::size_t k = 0; k < records.size(); k += 2)
+            groups.push_back({records[k].shot.exposure_us, {&records[k], &records[k + 1]}});
+    }
+
+    static double black_dn(std::size_t k) { return 100.0 + static_cast<double>(k); }
+    static double current_dn_per_s(std::size_t k) { return 800.0 + 40.0 * static_cast<double>(k); }
+    static double room_dn_per_s(std::size_t k) { return 300.0 * static_cast<double>(k % 3); }
+
+    static capture::Frame frame(const capture::FrameRecord& record) {
+        capture::Frame frame;
+        frame.size_px = record.size_px;
+        for (std::size_t k = 0; k < 8; ++k)
+            frame.values.push_back(static_cast<std::uint16_t>(std::lround(
+                black_dn(k) +
+                1e-6 * record.shot.exposure_us *
+                    (room_dn_per_s(k) +
+                     current_dn_per_s(k) * std::pow(2.0, (*record.temperature_c - 20.0) / 7.0)))));
+        return frame;
+    }
+
+    calibrate::DarkResult dark() const {
+        return calibrate::dark_of(groups, calibrate::PixelLayout{{4, 2}, 1, 16, "mono"}, frame, 8);
+    }
+};
+
+TEST(Dark, LightOfTheRoomIsToldFromDarkCurrentByTwoTemperatures) {
+    const WarmDarks warm(6.0);
+    const calibrate::DarkResult dark = warm.dark();
+    ASSERT_TRUE(dark.is_room_known);
+    EXPECT_EQ(dark.temperature_c, 20.0);
+    for (std::size_t k = 0; k < 8; ++k) {
+        // Values are rounded to a DN of 2000.
+        EXPECT_NEAR(dark.black_dn[k], WarmDarks::black_dn(k), 1.0);
+        EXPECT_NEAR(dark.room_dn_per_s[k], WarmDarks::room_dn_per_s(k), 3.0);
+        EXPECT_NEAR(dark.dark_dn_per_s[k] - dark.room_dn_per_s[k], WarmDarks::current_dn_per_s(k),
+                    3.0);
+    }
+}
+
+TEST(Dark, OneTemperatureDoesNotTellTheRoom) {
+    const calibrate::DarkResult dark = WarmDarks(1.0).dark();
+    EXPECT_FALSE(dark.is_room_known);
+    EXPECT_EQ(dark.room_dn_per_s[2], 0.0F);
+    EXPECT_EQ(dark.temperature_c, 20.5);
+}
+
 TEST(PhotonTransfer, GainAndReadNoiseAreFoundWithin3SigmaAnd2Percent) {
     const LabFrames& lab = sensor_lab();
     const calibrate::NoiseResult noise = noise_of_lab(lab, dark_of_lab(lab));

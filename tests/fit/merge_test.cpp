@@ -189,7 +189,9 @@ TEST(MergePixel, RefusesWhatIsNoNumber) {
 
 TEST(MergeFrames, MergesEveryPixelByItsOwnMaps) {
     const glm::ivec2 size_px{5, 3};
-    rig::Maps maps{size_px, {}, {}, {}, {}, {}};
+    rig::Maps maps;
+    maps.size_px = size_px;
+    maps.room_dn_per_s.assign(15, 0.0F);
     std::vector<std::uint16_t> brief, lengthy;
     for (int p = 0; p < 15; ++p) {
         maps.black_dn.push_back(60.0F + static_cast<float>(p));

@@ -149,6 +149,7 @@ rig::Maps straight_maps(const StraightBench& bench) {
     maps.size_px = bench.size_px;
     maps.black_dn.assign(count, static_cast<float>(kBlack_dn));
     maps.dark_dn_per_s.assign(count, 0.0F);
+    maps.room_dn_per_s.assign(count, 0.0F);
     maps.response.assign(count, 1.0F);
     maps.response_sigma_rel.assign(count, 0.0F);
     maps.is_bad.assign(count, 0.0F);

@@ -49,6 +49,7 @@ TEST(Rig, GivesBackWhatWasWritten) {
     const Maps expected = test::small_maps();
     EXPECT_EQ(maps.black_dn, expected.black_dn);
     EXPECT_EQ(maps.dark_dn_per_s, expected.dark_dn_per_s);
+    EXPECT_EQ(maps.room_dn_per_s, expected.room_dn_per_s);
     EXPECT_EQ(maps.response, expected.response);
     EXPECT_EQ(maps.response_sigma_rel, expected.response_sigma_rel);
     EXPECT_EQ(maps.is_bad, expected.is_bad);

@@ -58,6 +58,7 @@ inline Maps small_maps() {
         const auto value = static_cast<float>(k);
         maps.black_dn.push_back(48.0F + value / 7.0F);
         maps.dark_dn_per_s.push_back(value / 3.0F);
+        maps.room_dn_per_s.push_back(value / 7.0F);
         maps.response.push_back(1.0F - value / 100.0F);
         maps.response_sigma_rel.push_back(value / 1000.0F);
         maps.is_bad.push_back(k == 5 ? 1.0F : 0.0F);
