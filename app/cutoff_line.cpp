@@ -25,6 +25,7 @@ double tangent_at(double angle_deg) {
 std::vector<double> scanned(const BeamScan& scan, double tangent_x) {
     const int count = static_cast<int>(std::lround((kHighest_deg - kLowest_deg) / kStep_deg)) + 1;
     std::vector<double> light;
+    light.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k)
         light.push_back(scan(tangent_x, tangent_at(angle_deg(k))));
     if (!(*std::max_element(light.begin(), light.end()) > 0.0))

@@ -74,17 +74,17 @@ bool Look::operator==(const Look& other) const {
 }
 
 glm::u8vec3 scale_color(double position) {
-    static const std::array<glm::vec3, 7> kStops = {{{12, 10, 60},
-                                                     {30, 70, 200},
-                                                     {20, 180, 200},
-                                                     {70, 200, 70},
-                                                     {240, 220, 50},
-                                                     {230, 60, 30},
-                                                     {255, 240, 240}}};
-    const double at = std::clamp(position, 0.0, 1.0) * (kStops.size() - 1);
-    const auto stop = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
+    static const std::array<glm::vec3, 7> stops = {{{12, 10, 60},
+                                                    {30, 70, 200},
+                                                    {20, 180, 200},
+                                                    {70, 200, 70},
+                                                    {240, 220, 50},
+                                                    {230, 60, 30},
+                                                    {255, 240, 240}}};
+    const double at = std::clamp(position, 0.0, 1.0) * (stops.size() - 1);
+    const auto stop = std::min(static_cast<std::size_t>(at), stops.size() - 2);
     const auto share = static_cast<float>(at - static_cast<double>(stop));
-    return glm::u8vec3(glm::mix(kStops[stop], kStops[stop + 1], share) + 0.5F);
+    return glm::u8vec3(glm::mix(stops[stop], stops[stop + 1], share) + 0.5F);
 }
 
 double scale_position(double value, double least, double most) {

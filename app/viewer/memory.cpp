@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Read before any thread of ours could set it.
+// NOLINTBEGIN(concurrency-mt-unsafe)
 std::optional<fs::path> file() {
     if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
         return fs::path(config) / "nearfield" / "viewer.json";
@@ -22,6 +24,7 @@ std::optional<fs::path> file() {
         return fs::path(home) / ".config" / "nearfield" / "viewer.json";
     return std::nullopt;
 }
+// NOLINTEND(concurrency-mt-unsafe)
 
 }  // namespace
 

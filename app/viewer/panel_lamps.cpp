@@ -107,7 +107,8 @@ void draw_partner(Viewer& viewer, PanelState& state, const EditedLamp& lamp) {
     }
 }
 
-void draw_selected(Viewer& viewer, PanelState& state, EditedLamp lamp) {
+// `lamp`: a copy, which what is changed meanwhile does not move.
+void draw_selected(Viewer& viewer, PanelState& state, const EditedLamp& lamp) {
     std::string name = lamp.luminaire.name;
     if (ImGui::InputText("name", &name, ImGuiInputTextFlags_EnterReturnsTrue))
         change(viewer, SetName{lamp.id, name});
@@ -147,7 +148,7 @@ void draw_lamps_panel(Viewer& viewer, PanelState& state) {
     const EditedLamp* lamp =
         viewer.selected ? find_lamp(viewer.history.now, *viewer.selected) : nullptr;
     if (lamp != nullptr)
-        draw_selected(viewer, state, *lamp);
+        draw_selected(viewer, state, EditedLamp(*lamp));
 }
 
 void draw_files_panel(Viewer& viewer, PanelState& state) {

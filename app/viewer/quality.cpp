@@ -20,13 +20,13 @@ Quality quality(int q, int maps, int map_px, int taps, bool has_gloss) {
 }  // namespace
 
 const std::vector<Dial>& dials() {
-    static const std::vector<Dial> kDials = {{"fast", quality(4, 4, 64, 4, false)},
-                                             {"faster than exact", quality(8, 8, 96, 4, true)},
-                                             {"near exact", quality(16, 16, 192, 4, true)},
-                                             {"exact light", quality(0, 0, 192, 4, true)},
-                                             {"finer shadows", quality(0, 0, 384, 4, true)},
-                                             {"finest shadows", quality(0, 0, 768, 9, true)}};
-    return kDials;
+    static const std::vector<Dial> all = {{"fast", quality(4, 4, 64, 4, false)},
+                                          {"faster than exact", quality(8, 8, 96, 4, true)},
+                                          {"near exact", quality(16, 16, 192, 4, true)},
+                                          {"exact light", quality(0, 0, 192, 4, true)},
+                                          {"finer shadows", quality(0, 0, 384, 4, true)},
+                                          {"finest shadows", quality(0, 0, 768, 9, true)}};
+    return all;
 }
 
 std::vector<Quality> stages_of(int dial, int draft_divisor) {

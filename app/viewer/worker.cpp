@@ -108,6 +108,8 @@ bool Worker::stays_wanted(int ticket) {
 }
 
 struct Worker::Thread {
+    explicit Thread(Worker& owner) : worker(owner) {}
+
     Worker& worker;
     render::gpu::Session session{};
     Refiner refiner{session};

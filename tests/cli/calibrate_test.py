@@ -51,7 +51,7 @@ class Refusals(ProgramTest):
         self.assertFalse(pathlib.Path("rig.json").exists())
 
     def test_missing_darks(self):
-        folder = small_capture("no_darks", darks_per_exposure=0, exposure_ratio_limit_rel=1)
+        folder = small_capture("no_darks", darks_per_exposure=0, darks_after_per_exposure=0, exposure_ratio_limit_rel=1)
         self.assertIn("dark", self.refusal(folder, "-o", "rig.json"))
 
     def test_missing_flats(self):
