@@ -82,10 +82,10 @@ void run(ExportCommand& command) {
     std::optional<ExportFormat> format;
     check_options([&] { format = format_of(command); });
     const auto* proxy = std::get_if<ProxyFormat>(&*format);
-    if (proxy == nullptr && !command.proxy.report.empty())
-        throw CLI::ValidationError("--report", "is for arrays of projectors (mitsuba, pbrt) alone");
     const bool has_ies =
         proxy != nullptr && (*proxy == ProxyFormat::Gltf || *proxy == ProxyFormat::Usd);
+    if ((proxy == nullptr || has_ies) && !command.proxy.report.empty())
+        throw CLI::ValidationError("--report", "is for arrays of projectors (mitsuba, pbrt) alone");
     check_outputs({command.output, has_ies ? ies_beside(command.output) : "", command.proxy.report},
                   {command.input});
     if (proxy != nullptr) {

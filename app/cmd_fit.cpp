@@ -204,7 +204,7 @@ void add_fit(CLI::App& app) {
     add_number(*sub, "--flux-limit-rel", c->flux_limit_rel, 0.0, 10.0, "SHARE",
                "nothing is written and exit 3 where the flux is further off");
     sub->add_flag("--luminance", c->luminance_only, "one channel, of a color camera too");
-    add_seed(*sub, c->options.seed, "of the positions that are held out");
+    add_seed(*sub, c->options.seed, "of which positions are held out, and of the replicates");
     sub->callback([c] { run_fit(*c); });
 }
 

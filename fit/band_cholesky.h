@@ -32,9 +32,9 @@ void reset(BandMatrix& matrix, int size);
 
 /// A pivot that rounding makes smaller than 1e-14 of its diagonal entry is raised to that.
 /// Columns from `begin` on (a multiple of kColumnBlock, at most `factored`) hold entries of the
-/// matrix where they are not left out, those before stand factored. Only rows of columns that are
-/// left out may be freed later: their entries before `begin` are factored with the others.
-/// Cost    size * band^2 / 2 multiply-adds from column 0, 5 to 8 of them a cycle (AVX2).
+/// matrix where they are not left out, those before stand factored. Rows of columns that are left
+/// out are factored with the others, so that these can come back later from where they stand. Cost
+/// size * band^2 / 2 multiply-adds from column 0, 5 to 8 of them a cycle (AVX2).
 void factorize(BandMatrix& matrix, int begin = 0);
 
 /// x <- L^-T L^-1 x.

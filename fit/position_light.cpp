@@ -25,12 +25,6 @@ double true_exposure_s(const rig::Radiometry& radiometry, const FrameRecord& fra
     return 1e-6 * (frame.exposure_us > 0 ? frame.exposure_us : frame.shot.exposure_us);
 }
 
-// The camera's own clock, which tells when it was exposed; of cameras without one, the session's.
-double time_s(const FrameRecord& frame) {
-    return frame.camera_time_ns > 0 ? 1e-9 * static_cast<double>(frame.camera_time_ns)
-                                    : 1e-6 * static_cast<double>(frame.time_us);
-}
-
 double dark_factor(const rig::Radiometry& radiometry, const PositionFrames& position) {
     double sum_c = 0;
     int count = 0;
@@ -175,6 +169,11 @@ void take_off_veil(const Measurement& measurement, MergedImage& image) {
 }
 
 }  // namespace
+
+double time_s(const FrameRecord& frame) {
+    return frame.camera_time_ns > 0 ? 1e-9 * static_cast<double>(frame.camera_time_ns)
+                                    : 1e-6 * static_cast<double>(frame.time_us);
+}
 
 std::vector<PositionFrames> positions_of(const capture::Capture& capture) {
     std::map<std::pair<int, int>, PositionFrames> by_place;

@@ -39,6 +39,10 @@ PositionFrames blocked_frames(const capture::Capture& capture);
 /// grid), or its maps hold what is no number.
 void check_rig(const Measurement& measurement);
 
+/// When a frame was exposed, by the camera's own clock; of cameras without one, since the session's
+/// start.
+double time_s(const capture::FrameRecord& frame);
+
 /// The lamp's light at a frame's time over that of the first look at the reference; 1 where a
 /// session has no look.
 class LampDrift {

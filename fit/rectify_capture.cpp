@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 namespace nearfield::fit {
@@ -72,14 +71,14 @@ void put_positions(const Measurement& measurement,
     fit.exposure_chi_square = chi_square;
 }
 
-// By the camera's clock.
+// From the first frame to the last.
 double duration_s(const capture::Capture& capture) {
-    std::uint64_t first_ns = std::numeric_limits<std::uint64_t>::max(), last_ns = 0;
+    double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
     for (const auto& [number, frame] : capture.frames) {
-        first_ns = std::min(first_ns, frame.camera_time_ns);
-        last_ns = std::max(last_ns, frame.camera_time_ns);
+        first_s = std::min(first_s, time_s(frame));
+        last_s = std::max(last_s, time_s(frame));
     }
-    return last_ns > first_ns ? 1e-9 * static_cast<double>(last_ns - first_ns) : 0.0;
+    return last_s > first_s ? last_s - first_s : 0.0;
 }
 
 void check_positions(const Measurement& measurement, const std::vector<PositionFrames>& positions) {

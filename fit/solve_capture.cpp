@@ -48,7 +48,8 @@ SmoothnessCurve cross_validate_some(const MeasuredTexels& texels,
 PositionShares position_shares(const MeasuredTexels& texels,
                                const Design& design,
                                const FitOptions& solve,
-                               int texels_asked) {
+                               int texels_asked,
+                               std::uint64_t seed) {
     PositionShares shares;
     for (const int folds : {2, 3, 5, 10}) {
         if (folds > texels.positions())
@@ -56,6 +57,7 @@ PositionShares position_shares(const MeasuredTexels& texels,
         SmoothnessOptions smoothness;
         smoothness.lambdas = {solve.solve.lambda};
         smoothness.folds = folds;
+        smoothness.seed = seed;
         shares.share.push_back(1.0 - 1.0 / folds);
         shares.chi_square.push_back(
             cross_validate_some(texels, design, solve, texels_asked, smoothness).chi_square[0]);
@@ -68,11 +70,13 @@ PositionShares position_shares(const MeasuredTexels& texels,
 void choose_model_error(const MeasuredTexels& texels,
                         const Design& design,
                         const std::optional<double>& lambda,
+                        std::uint64_t seed,
                         FitOptions& solve) {
     constexpr double kLeast = 1e-3, kMost = 1;
     constexpr double kNear = 1.1;
     constexpr int kRounds = 8;
     SmoothnessOptions smoothness;
+    smoothness.seed = seed;
     smoothness.lambdas =
         lambda ? std::vector<double>{*lambda} : std::vector<double>{1e-4, 1e-3, 1e-2, 1e-1};
     solve.model_error_rel = kLeast;
@@ -162,13 +166,15 @@ CaptureFit solve_capture(const RectifiedCapture& capture,
     constexpr int kManyTexels = 50;
     solve.model_error_rel = options.model_error_rel.value_or(0.0);
     if (!options.model_error_rel)
-        choose_model_error(texels, design, options.lambda, solve);
+        choose_model_error(texels, design, options.lambda, options.seed, solve);
+    SmoothnessOptions smoothness;
+    smoothness.seed = options.seed;
     if (!options.lambda)
-        fit.smoothness = cross_validate_some(texels, design, solve, kManyTexels, {});
+        fit.smoothness = cross_validate_some(texels, design, solve, kManyTexels, smoothness);
     fit.model_error_rel = solve.model_error_rel;
     fit.lambda = options.lambda ? *options.lambda : fit.smoothness.lambda[fit.smoothness.best];
     solve.solve.lambda = fit.lambda;
-    fit.shares = position_shares(texels, design, solve, kFewTexels);
+    fit.shares = position_shares(texels, design, solve, kFewTexels, options.seed);
     const double chosen_s = now_s();
     fit.smoothness_s = chosen_s - start_s;
     fit.chi_square.resize(capture.planes.texel_count());

@@ -80,6 +80,28 @@ TEST(FitCapture, FollowsTheLampsDrift) {
     EXPECT_NEAR(result.flux_rel, 0, 5e-3);
 }
 
+// Proves that dark current is followed as the sensor warms, and light of the room is not let grow
+// with it: either wrong way is more than 2 % of the flux.
+TEST(FitCapture, FollowsDarkCurrentAndLeavesTheRoomAsItIs) {
+    StraightBench bench;
+    bench.current_dn_per_s = 400;
+    bench.room_dn_per_s = 400;
+    bench.sensor_rise_c = 7;
+    EXPECT_NEAR(fitted(bench).flux_rel, 0, 3e-3);
+}
+
+// Proves what the page says of more positions: how well a half, two thirds, ... foretell the rest.
+TEST(FitCapture, TellsWhatMorePositionsAreWorth) {
+    const Fitted result = fitted({});
+    const PositionShares& shares = result.fit.shares;
+    ASSERT_EQ(shares.share.size(), 4U);
+    EXPECT_EQ(shares.share.front(), 0.5);
+    EXPECT_NEAR(shares.share.back(), 0.9, 1e-12);
+    EXPECT_GT(shares.chi_square.back(), 0);
+    EXPECT_LT(shares.chi_square.back(), 0.7 * shares.chi_square.front());
+    EXPECT_GT(result.fit.capture_s, 20);  // a frame a second
+}
+
 // Proves that positions may be missing: they are counted, and the rest tells.
 TEST(FitCapture, DoesWithoutAPosition) {
     StraightBench bench;

@@ -15,6 +15,7 @@ constexpr glm::dvec2 kPitch_m{0.02, 0.024};
 constexpr double kDelta_m = 0.2, kCamera_m = 0.5;
 constexpr double kDnPerLuxSecond = 100, kBlack_dn = 100, kPeak = 0.5;
 constexpr int kBits = 12;
+constexpr double kStart_c = 20;
 
 glm::dvec2 center_m(glm::ivec2 position) {
     return (glm::dvec2(position) - 0.5 * glm::dvec2(kGrid - 1)) * kPitch_m;
@@ -86,7 +87,18 @@ Seen seen_of(const StraightBench& bench, const capture::Shot& shot) {
     return {lamp_lx, bench.beside_lx * (1 - lamp_lx / open_lx())};
 }
 
-capture::Frame frame_of(const StraightBench& bench, const capture::Shot& shot, double factor) {
+// Of a shot so far into the capture.
+double sensor_c(const StraightBench& bench, double part) {
+    return kStart_c + bench.sensor_rise_c * part;
+}
+
+double dark_dn_per_s(const StraightBench& bench, double part) {
+    return bench.room_dn_per_s +
+           bench.current_dn_per_s * std::pow(2.0, (sensor_c(bench, part) - kStart_c) / 7.0);
+}
+
+capture::Frame frame_of(const StraightBench& bench, const capture::Shot& shot, double part) {
+    const double factor = 1 + bench.lamp_rise_rel * part;
     const Seen seen = seen_of(bench, shot);
     capture::Frame frame;
     frame.size_px = bench.size_px;
@@ -96,7 +108,8 @@ capture::Frame frame_of(const StraightBench& bench, const capture::Shot& shot, d
             const double x_m = (x + 0.5 - 0.5 * bench.size_px.x) * bench.pixel_m;
             const double lux =
                 bench.brightness * factor * (slope(x_m) * seen.lamp_lx + seen.even_lx);
-            const double dn = kBlack_dn + kDnPerLuxSecond * lux * shot.exposure_us * 1e-6;
+            const double dn = kBlack_dn + (kDnPerLuxSecond * lux + dark_dn_per_s(bench, part)) *
+                                              shot.exposure_us * 1e-6;
             frame.values.push_back(
                 static_cast<std::uint16_t>(std::clamp(std::lround(dn), 0L, (1L << kBits) - 1L)));
         }
@@ -132,6 +145,7 @@ rig::Rig straight_rig(const StraightBench& bench) {
     radiometry.read_noise_dn = 0.3;  // rounding
     radiometry.scale_lx_s_per_dn = 1 / kDnPerLuxSecond;
     radiometry.is_absolute = true;
+    radiometry.dark_temperature_c = kStart_c;
     radiometry.filter_profile = model::make_profile("bspline");
     for (std::array<double, 3>& cell : radiometry.filter_profile.cells)
         for (double& number : cell)
@@ -148,8 +162,8 @@ rig::Maps straight_maps(const StraightBench& bench) {
     rig::Maps maps;
     maps.size_px = bench.size_px;
     maps.black_dn.assign(count, static_cast<float>(kBlack_dn));
-    maps.dark_dn_per_s.assign(count, 0.0F);
-    maps.room_dn_per_s.assign(count, 0.0F);
+    maps.dark_dn_per_s.assign(count, static_cast<float>(dark_dn_per_s(bench, 0.0)));
+    maps.room_dn_per_s.assign(count, static_cast<float>(bench.room_dn_per_s));
     maps.response.assign(count, 1.0F);
     maps.response_sigma_rel.assign(count, 0.0F);
     maps.is_bad.assign(count, 0.0F);
@@ -196,7 +210,8 @@ capture::Capture take_capture(const StraightBench& bench, const std::string& fol
             record.pixel_format = "Mono12";
             record.exposure_us = shot.exposure_us;
             record.time_us = 1000000LL * shot.number;
-            writer.add(frame_of(bench, shot, 1 + bench.lamp_rise_rel * part), record);
+            record.temperature_c = sensor_c(bench, part);
+            writer.add(frame_of(bench, shot, part), record);
         }
     }
     return capture::read_capture(folder);

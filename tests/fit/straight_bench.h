@@ -19,6 +19,9 @@ struct StraightBench {
     bool has_blocked_frames = true;
     int drift_every = 5;  // positions between looks at the reference
     double brightness = 1;
+    double current_dn_per_s = 0;  // dark current at 20 C, from which the sensor rises
+    double room_dn_per_s = 0;     // light that is always there
+    double sensor_rise_c = 0;     // until the last frame
 };
 
 /// What it was measured with: 5 x 4 positions, 1 lux is 100 DN/s.
