@@ -121,6 +121,30 @@ TEST(ExposureRatios, ALampThatWalksShowsAsDriftAndWidensSigma) {
     EXPECT_GT(result.ratios[0].sigma_rel, result.ratios[0].drift_rel / 3.5);
 }
 
+// A sensor 7 C warmer than its darks has twice their dark current, and the room's light as it was.
+TEST(Scale, LightIsWithoutTheDarkCurrentOfItsOwnTemperature) {
+    const calibrate::PixelLayout layout{{4, 2}, 1, 16, "mono"};
+    rig::Radiometry radiometry;
+    radiometry.saturation_dn = 4000;
+    radiometry.dark_temperature_c = 20;
+    rig::Maps maps;
+    maps.size_px = layout.size_px;
+    maps.black_dn.assign(8, 100.0F);
+    maps.dark_dn_per_s.assign(8, 50.0F);
+    maps.room_dn_per_s.assign(8, 20.0F);
+    maps.response.assign(8, 2.0F);
+    maps.is_bad.assign(8, 0.0F);
+    capture::Frame frame;
+    frame.size_px = layout.size_px;
+    frame.values.assign(8, 100 + 80 + 500);
+    capture::FrameRecord record;
+    record.shot.exposure_us = 1e6;
+    record.temperature_c = 27.0;
+    EXPECT_NEAR(calibrate::light_of(frame, record, layout, radiometry, maps)[5], 250.0F, 1e-4);
+    record.temperature_c.reset();
+    EXPECT_NEAR(calibrate::light_of(frame, record, layout, radiometry, maps)[5], 265.0F, 1e-4);
+}
+
 TEST(ExposureRatios, ExposuresWithoutCommonPixelsKeepWhatWasAsked) {
     const LabFrames lab = lights_of(sensor_bench());
     Known known = known_of(lab);
